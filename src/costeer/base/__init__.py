@@ -1,0 +1,1 @@
+"""Mathematics without cars: angles, curves, integration, windows, filters, array engine."""

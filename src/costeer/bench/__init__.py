@@ -1,0 +1,1 @@
+"""How fast it is: control step, trial, batch, and peers where installed."""

@@ -1,0 +1,1 @@
+"""The paper's controller: one stage a file, in the order in which they run."""

@@ -1,0 +1,1 @@
+"""Who holds the wheel: vision, arms, reliance, decision, gaze, population."""

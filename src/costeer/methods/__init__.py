@@ -1,0 +1,1 @@
+"""Methods of assistance behind one interface; each composes controller stages."""

@@ -1,0 +1,1 @@
+"""What the world does: tyre, vehicle, steering column, traffic and road."""

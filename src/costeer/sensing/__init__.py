@@ -1,0 +1,1 @@
+"""What can be known of the world: the measurement, its sensors, a torque observer."""

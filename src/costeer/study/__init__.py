@@ -1,0 +1,1 @@
+"""The experiment: conditions, design, measures, statistics, figures and report."""

@@ -1,0 +1,1 @@
+"""Learning intention from records: labels, data sets, fit and evaluation."""

@@ -1,0 +1,1 @@
+"""Virtual drivers held against human values."""
