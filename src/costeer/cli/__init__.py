@@ -1,1 +1,80 @@
-"""The command line: one file per command, imported only when it is called."""
+"""The command line: one file per command, imported only when it is called.
+
+A command is a function that bears the name of its file; its docstring ends with an
+example. The table below lets `costeer --help` list the commands without importing
+what they need. Errors leave as one line on stderr: cli/errors.py.
+"""
+
+from __future__ import annotations
+
+import sys
+from importlib import import_module
+from typing import Annotated
+
+import typer
+
+from costeer.cli.errors import exit_code_of
+from costeer.cli.group import LazyGroup
+
+__all__ = ["app", "main"]
+
+
+class CommandGroup(LazyGroup):
+    """The commands of costeer and what each does, in one line."""
+
+    summaries = {  # noqa: RUF012  because Typer builds the class without arguments
+        "study": "Run the whole experiment with virtual drivers, then the report.",
+        "simulate": "Simulate one trial and write its record.",
+        "drivers": "Draw, plot and validate virtual drivers.",
+        "train": "Fit the intention network on records.",
+        "evaluate": "Judge the intention network on records or a table.",
+        "analyse": "Compute driving measures from records or a table.",
+        "report": "Write tables, tests, figures and report of a study folder again.",
+        "bench": "Measure the speed of the control step, a trial and a batch.",
+        "doctor": "Show what this computer has and how to mend what is missing.",
+    }
+    package = "costeer.cli"
+
+
+app = typer.Typer(cls=CommandGroup, rich_markup_mode=None, add_completion=False)
+
+
+def _print_version(asked: bool) -> None:
+    """Print the version and stop, if asked."""
+    if asked:
+        typer.echo(f"costeer {import_module('costeer').__version__}")
+        raise typer.Exit
+
+
+@app.callback()
+def costeer(
+    version: Annotated[
+        bool,
+        typer.Option(
+            "--version",
+            callback=_print_version,
+            is_eager=True,
+            help="Show the version.",
+        ),
+    ] = False,
+) -> None:
+    """Intention-based haptic guidance steering: simulate, study, analyse.
+
+    Example:
+        costeer study --out out/study
+    """
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Run the command line; return its exit code: 0, 2 for bad input, 130 if stopped.
+
+    Args:
+        arguments: Words after `costeer`; those of the process if None.
+    """
+    words = sys.argv[1:] if arguments is None else arguments
+    command = typer.main.get_command(app)
+    return exit_code_of(
+        lambda: command.main(
+            words or ["--help"], prog_name="costeer", standalone_mode=False
+        )
+    )

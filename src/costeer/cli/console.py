@@ -1,0 +1,114 @@
+"""What commands print besides results: progress on stderr, tables on stdout."""
+
+from __future__ import annotations
+
+import sys
+import time
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+
+Advance = Callable[[int], None]
+"""Tells the progress display that so many more pieces are done."""
+
+
+@contextmanager
+def progress(description: str, total: int, done: int = 0) -> Iterator[Advance]:
+    """Show on stderr how far a long command is: a bar, or a line for each tenth.
+
+    Args:
+        description: What is being done.
+        total: Number of pieces.
+        done: Pieces that an earlier run finished.
+
+    Yields:
+        A function to call with the number of pieces just finished, from one thread.
+    """
+    show = _bar if sys.stderr.isatty() else _lines
+    with show(description, total, done) as advance:
+        yield advance
+
+
+@contextmanager
+def _bar(description: str, total: int, done: int) -> Iterator[Advance]:
+    """A bar with the time passed and the time left, for a terminal."""
+    from rich.console import Console
+    from rich.progress import (
+        BarColumn,
+        MofNCompleteColumn,
+        Progress,
+        TextColumn,
+        TimeElapsedColumn,
+        TimeRemainingColumn,
+    )
+
+    columns = (
+        TextColumn("{task.description}"),
+        BarColumn(),
+        MofNCompleteColumn(),
+        TimeElapsedColumn(),
+        TextColumn("left"),
+        TimeRemainingColumn(),
+    )
+    with Progress(*columns, console=Console(stderr=True)) as display:
+        task = display.add_task(description, total=total, completed=done)
+        yield lambda pieces: display.advance(task, pieces)
+
+
+@contextmanager
+def _lines(description: str, total: int, done: int) -> Iterator[Advance]:
+    """A line for each tenth that is done, for a log file."""
+    start = time.monotonic()
+    finished, printed = done, _tenths(done, total)
+
+    def advance(pieces: int) -> None:
+        nonlocal finished, printed
+        finished += pieces
+        if _tenths(finished, total) > printed:
+            printed = _tenths(finished, total)
+            elapsed = time.monotonic() - start
+            print(
+                f"{description}: {finished} of {total}, {elapsed:.0f} s",
+                file=sys.stderr,
+                flush=True,
+            )
+
+    yield advance
+
+
+def _tenths(finished: int, total: int) -> int:
+    """Whole tenths that are done."""
+    return 10 * finished // total if total > 0 else 10
+
+
+def note(message: str) -> None:
+    """Tell the user something on stderr, away from results."""
+    print(message, file=sys.stderr, flush=True)
+
+
+def print_table(
+    headings: Sequence[str], rows: Sequence[Sequence[str]], title: str = ""
+) -> None:
+    """Print a table on stdout; a column whose cells are all numbers leans right."""
+    from rich.console import Console
+    from rich.table import Table
+    from rich.text import Text
+
+    table = Table(title=Text(title) if title else None, title_justify="left")
+    for index, heading in enumerate(headings):
+        cells = [row[index] for row in rows]
+        numeric = all(map(_is_number, cells))
+        table.add_column(Text(heading), justify="right" if numeric else "left")
+    for row in rows:
+        table.add_row(*map(Text, row))
+    Console().print(table)
+
+
+def _is_number(cell: str) -> bool:
+    """Whether a cell holds a number, a dash or nothing."""
+    if cell in {"", "-", "–"}:
+        return True
+    try:
+        float(cell)
+    except ValueError:
+        return False
+    return True
