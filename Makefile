@@ -1,0 +1,58 @@
+# Needs Python 3.11 or later with pip, make and git. Each target sets up .venv by
+# itself from a hashed lock (requirements/); a second call finds it done.
+
+PYTHON ?= python3
+OUT ?= out/study
+WORKERS ?= 2
+BIN := $(if $(filter Windows_NT,$(OS)),.venv/Scripts,.venv/bin)
+UV := $(BIN)/python -m uv
+COMPILE := $(UV) pip compile --quiet --universal --python-version 3.11 \
+	--generate-hashes --no-annotate --no-emit-index-url --no-emit-find-links \
+	--custom-compile-command "make lock"
+BASE := pyproject.toml requirements/build.in
+
+export UV_PYTHON_DOWNLOADS = never
+
+.PHONY: help study test check bench lock clean base dev bench-env
+
+help:
+	@echo "make study   run the experiment, write $(OUT)/report.html"
+	@echo "make test    run the tests, with branch coverage"
+	@echo "make check   formatting, lint, types, import order, documentation"
+	@echo "make bench   measure speed, beside two peers"
+	@echo "make lock    pin every dependency anew"
+	@echo "make clean   remove results, caches and .venv"
+
+study: base
+	$(BIN)/costeer study --out $(OUT)
+
+test: dev
+	$(BIN)/python -m pytest -n $(WORKERS) --cov --cov-report=term:skip-covered
+
+check: dev
+	$(BIN)/ruff format --check .
+	$(BIN)/ruff check .
+	$(BIN)/mypy --strict src
+	$(BIN)/lint-imports --no-logo
+	$(BIN)/mkdocs build --strict --quiet --site-dir out/site
+
+bench: bench-env
+	$(BIN)/costeer bench
+
+base dev:
+	@$(PYTHON) requirements/install.py $@
+
+bench-env:
+	@$(PYTHON) requirements/install.py bench
+
+lock: dev
+	$(COMPILE) requirements/installer.in -o requirements/installer.lock
+	$(COMPILE) $(BASE) --extra jax --extra train --extra dev -o requirements/dev.lock
+	$(COMPILE) $(BASE) -c requirements/dev.lock -o requirements/base.lock
+	$(COMPILE) $(BASE) -c requirements/dev.lock --extra bench -o requirements/bench.lock
+	@! grep -nE 'https?://' requirements/*.lock
+
+clean:
+	rm -rf .venv out site .coverage .coverage.* .hypothesis .mypy_cache .pytest_cache \
+		.ruff_cache .import_linter_cache
+	find src tests -name __pycache__ -type d -prune -exec rm -rf {} +
