@@ -1,0 +1,1 @@
+"""Records and networks in the formats of other programs."""

@@ -1,0 +1,142 @@
+"""What the network sees of car and driver: the six signals of Eq. (1).
+
+The network is trained for the adjacent lane on the right. Whenever the adjacent lane
+is on the left it is shown the mirrored world: head yaw, steering-wheel angle and yaw
+angle change sign; speed, acceleration and the distance to the shared boundary do not.
+
+Each sample is mirrored by the side that held *at that sample*. The other reading
+would turn the whole window by the side that holds now; it costs a second run of the
+window after every crossing, and the two differ only while a window reaches back over
+a crossing, at most 3 s. Training follows the same rule, so the network has seen such
+windows.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from costeer.base.array import Real, compiled
+
+WINDOW_LENGTH = 180
+"""Samples in a window, k of Eq. (1) [-]."""
+
+SAMPLE_RATE = 60.0
+"""Samples a second [Hz]."""
+
+ADJACENT_RIGHT = -1
+ADJACENT_LEFT = 1
+
+FEATURE_LIMIT = 10.0
+"""Scaled signals are held within ± this many standard deviations [-].
+
+Source: assumed; far outside of anything trained on, it only keeps a wrong unit or a
+broken sensor from overflowing the arithmetic.
+"""
+
+
+class IntentionSample(NamedTuple):
+    """One sample of the six signals of Eq. (1), in the order the network takes them.
+
+    Attributes:
+        head_yaw: Normalised to [-1, 1], left positive; NaN if the head was not
+            tracked, which makes the verdict invalid [-].
+        longitudinal_acceleration: Along the car's axis [m/s²].
+        longitudinal_velocity: Along the car's axis [m/s].
+        steering_wheel_angle: Left positive [rad].
+        distance_to_adjacent_lane: From the centre of gravity to the boundary shared
+            with the adjacent lane, positive inside the own lane [m].
+        yaw_angle: Against the road, left positive [rad].
+    """
+
+    head_yaw: Real
+    longitudinal_acceleration: Real
+    longitudinal_velocity: Real
+    steering_wheel_angle: Real
+    distance_to_adjacent_lane: Real
+    yaw_angle: Real
+
+
+FEATURES: tuple[str, ...] = IntentionSample._fields
+NUM_FEATURES = len(FEATURES)
+_MIRRORED = ("head_yaw", "steering_wheel_angle", "yaw_angle")
+
+
+@compiled
+def facing(sample: IntentionSample, adjacent_side: Real) -> IntentionSample:
+    """The sample as if the adjacent lane were on the right.
+
+    Args:
+        sample: In the car's own signs.
+        adjacent_side: -1 right, +1 left.
+    """
+    turn = -1.0 * adjacent_side
+    return IntentionSample(
+        head_yaw=turn * sample.head_yaw,
+        longitudinal_acceleration=sample.longitudinal_acceleration,
+        longitudinal_velocity=sample.longitudinal_velocity,
+        steering_wheel_angle=turn * sample.steering_wheel_angle,
+        distance_to_adjacent_lane=sample.distance_to_adjacent_lane,
+        yaw_angle=turn * sample.yaw_angle,
+    )
+
+
+def adjacent_side(lane: NDArray[np.int8]) -> NDArray[np.int8]:
+    """Side of the adjacent lane on a two-lane road: -1 right, +1 left.
+
+    Args:
+        lane: 0 for the right lane, 1 for the left one.
+
+    Raises:
+        ValueError: If there is another lane.
+    """
+    unknown = set(np.unique(lane)) - {0, 1}
+    if unknown:
+        raise ValueError(
+            f"lane has the values {sorted(int(v) for v in unknown)}; on a two-lane "
+            "road they are 0 (right) and 1 (left)"
+        )
+    side = np.where(lane == 0, ADJACENT_LEFT, ADJACENT_RIGHT)
+    return side.astype(np.int8)
+
+
+def feature_series(
+    columns: Mapping[str, NDArray[np.float64]], side: NDArray[np.int8]
+) -> NDArray[np.float64]:
+    """Signals of Eq. (1) as the network takes them, before scaling.
+
+    Args:
+        columns: The arrays of `FEATURES`, shape `(time,)` each.
+        side: Side of the adjacent lane at each sample, -1 or +1, shape `(time,)`.
+
+    Returns:
+        Mirrored where the side is left, shape `(time, feature)`.
+    """
+    turn = -np.asarray(side, np.float64)
+    series = [np.asarray(columns[name], np.float64) for name in FEATURES]
+    faced = [
+        turn * values if name in _MIRRORED else values
+        for name, values in zip(FEATURES, series, strict=True)
+    ]
+    return np.stack(faced, axis=-1)
+
+
+def scaled(
+    features: NDArray[np.float64],
+    mean: NDArray[np.float64],
+    scale: NDArray[np.float64],
+) -> NDArray[np.float64]:
+    """Features as standard deviations from the mean of the training set.
+
+    Args:
+        features: Shape `(*batch, feature)`.
+        mean: Of each feature, in its unit, shape `(feature,)`.
+        scale: Standard deviation of each feature, in its unit, shape `(feature,)`.
+
+    Returns:
+        Within ±`FEATURE_LIMIT`, same shape; NaN stays NaN.
+    """
+    return np.clip((features - mean) / scale, -FEATURE_LIMIT, FEATURE_LIMIT)

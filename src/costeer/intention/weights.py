@@ -1,0 +1,177 @@
+"""The network's weights as a file, and the weights that ship with costeer.
+
+The format is NumPy's `.npz` without pickles: one array per field of `NetworkWeights`
+and `header`, a JSON text in UTF-8 with the format's version and what is known of the
+training. The same network gives the same bytes.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import io
+import json
+import os
+import zipfile
+from importlib import resources
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from costeer.intention.features import FEATURES, NUM_FEATURES, WINDOW_LENGTH
+from costeer.intention.gru import NetworkWeights
+
+FORMAT_VERSION = 1
+_DOUBLE = ("feature_mean", "feature_scale")
+_SHIPPED = "ibhs.npz"
+
+
+class IntentionNetwork(NamedTuple):
+    """A trained network and where it comes from.
+
+    Attributes:
+        weights: All numbers.
+        facts: What is known of the training: drivers, samples, seed, results.
+        hash: SHA-256 of the weights, see `weights_hash`.
+    """
+
+    weights: NetworkWeights
+    facts: dict[str, Any]  # Any: JSON
+    hash: str
+
+
+def weights_hash(weights: NetworkWeights) -> str:
+    """SHA-256 over names, shapes and little-endian bytes of all arrays."""
+    digest = hashlib.sha256()
+    for name, values in _stored(weights).items():
+        digest.update(f"{name}{values.shape}{values.dtype.str}".encode())
+        digest.update(values.tobytes())
+    return digest.hexdigest()
+
+
+def intention_network(
+    weights: NetworkWeights, facts: dict[str, Any]
+) -> IntentionNetwork:
+    """Join weights and facts, after a check of all shapes and values.
+
+    Raises:
+        ValueError: If an array has the wrong shape or a value is not finite.
+    """
+    checked = NetworkWeights(**_stored(weights))
+    _check(checked, "the network")
+    return IntentionNetwork(weights=checked, facts=facts, hash=weights_hash(checked))
+
+
+def save_weights(path: Path, network: IntentionNetwork) -> None:
+    """Write the file in one piece: it is there whole or not at all."""
+    header = {
+        "version": FORMAT_VERSION,
+        "features": list(FEATURES),
+        "window_length": WINDOW_LENGTH,
+        "hash": network.hash,
+        "facts": network.facts,
+    }
+    text = json.dumps(header, sort_keys=True, indent=1).encode()
+    buffer = io.BytesIO()
+    arrays: dict[str, Any] = {"header": np.frombuffer(text, np.uint8)}
+    arrays |= _stored(network.weights)
+    np.savez(buffer, **arrays)
+    partial = path.with_name(f".{path.name}.{os.getpid()}")
+    try:
+        partial.write_bytes(buffer.getvalue())
+        partial.replace(path)
+    finally:
+        partial.unlink(missing_ok=True)
+
+
+def load_weights(path: Path | None = None) -> IntentionNetwork:
+    """Read a network; without a path, the one that ships with costeer.
+
+    Raises:
+        ValueError: If the file is not such a network, is of another version, does not
+            fit itself or has been altered.
+        OSError: If the file cannot be read.
+    """
+    if path is None:
+        content = resources.files(__package__).joinpath("data", _SHIPPED).read_bytes()
+        return _parsed(content, f"the shipped {_SHIPPED}")
+    return _parsed(path.read_bytes(), str(path))
+
+
+def _stored(weights: NetworkWeights) -> dict[str, NDArray[Any]]:
+    """The arrays by name, in the types of the file."""
+    return {
+        name: np.ascontiguousarray(values, "<f8" if name in _DOUBLE else "<f4")
+        for name, values in weights._asdict().items()
+    }
+
+
+def _parsed(content: bytes, source: str) -> IntentionNetwork:
+    header, arrays = _unpacked(content, source)
+    if header.get("version") != FORMAT_VERSION:
+        raise ValueError(
+            f"{source} has format version {header.get('version')}, this costeer reads "
+            f"version {FORMAT_VERSION}: train again with `costeer train`"
+        )
+    if header.get("features") != list(FEATURES):
+        raise ValueError(
+            f"{source} is for the signals {header.get('features')}, not "
+            f"{list(FEATURES)}: train again with `costeer train`"
+        )
+    missing = [name for name in NetworkWeights._fields if name not in arrays]
+    if missing:
+        raise ValueError(f"{source} lacks the arrays {', '.join(missing)}")
+    weights = NetworkWeights(**{name: arrays[name] for name in NetworkWeights._fields})
+    _check(weights, source)
+    network = intention_network(weights, header.get("facts", {}))
+    if network.hash != header.get("hash"):
+        raise ValueError(f"{source} was altered: its hash does not fit its weights")
+    return network
+
+
+def _unpacked(content: bytes, source: str) -> tuple[dict[str, Any], dict[str, Any]]:
+    """Header and arrays of the file."""
+    try:
+        with np.load(io.BytesIO(content), allow_pickle=False) as archive:
+            arrays = {name: archive[name] for name in archive.files}
+        return json.loads(arrays.pop("header").tobytes()), arrays
+    except (
+        ValueError,
+        KeyError,
+        EOFError,
+        AttributeError,
+        zipfile.BadZipFile,
+    ) as error:
+        raise ValueError(
+            f"{source} is not a file of intention weights (.npz of `costeer train`), "
+            "or it is damaged"
+        ) from error
+
+
+def _check(weights: NetworkWeights, source: str) -> None:
+    """Refuse shapes that do not fit together and values that are not finite."""
+    hidden = weights.output_weights.size
+    wanted = {
+        "feature_mean": (NUM_FEATURES,),
+        "feature_scale": (NUM_FEATURES,),
+        "input_weights": (3, hidden, NUM_FEATURES),
+        "input_bias": (3, hidden),
+        "hidden_weights": (3, hidden, hidden),
+        "hidden_bias": (3, hidden),
+        "output_weights": (hidden,),
+        "output_bias": (1,),
+    }
+    for name, values in weights._asdict().items():
+        if values.shape != wanted[name] or values.size == 0:
+            raise ValueError(
+                f"{name} of {source} has the shape {values.shape}, expected "
+                f"{wanted[name]} for hidden size {hidden}"
+            )
+        if not np.isfinite(values).all():
+            raise ValueError(f"{name} of {source} holds values that are not finite")
+    if (weights.feature_scale <= 0).any():
+        raise ValueError(
+            f"feature_scale of {source} is {weights.feature_scale.tolist()}; "
+            "standard deviations are positive"
+        )

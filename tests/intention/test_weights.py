@@ -1,0 +1,141 @@
+"""A file of weights is whole, unaltered and fits, or it is refused."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from costeer.intention.gru import NetworkWeights, random_weights
+from costeer.intention.weights import (
+    IntentionNetwork,
+    intention_network,
+    load_weights,
+    save_weights,
+)
+
+
+def network(hidden: int = 8, seed: int = 1) -> IntentionNetwork:
+    return intention_network(random_weights(hidden, seed), {"seed": seed})
+
+
+def test_what_is_written_is_read_again(tmp_path: Path) -> None:
+    file = tmp_path / "weights.npz"
+    save_weights(file, network())
+    again = load_weights(file)
+    assert again.hash == network().hash
+    assert again.facts == {"seed": 1}
+    for mine, read in zip(network().weights, again.weights, strict=True):
+        np.testing.assert_array_equal(mine, read)
+
+
+def test_the_same_network_gives_the_same_bytes(tmp_path: Path) -> None:
+    save_weights(tmp_path / "a.npz", network())
+    save_weights(tmp_path / "b.npz", network())
+    assert (tmp_path / "a.npz").read_bytes() == (tmp_path / "b.npz").read_bytes()
+
+
+def test_a_file_at_hidden_64_stays_far_below_a_megabyte(tmp_path: Path) -> None:
+    save_weights(tmp_path / "a.npz", network(64))
+    assert (tmp_path / "a.npz").stat().st_size < 100_000
+
+
+def test_any_changed_weight_changes_the_hash() -> None:
+    weights = random_weights(8, 1)
+    before = intention_network(weights, {}).hash
+    weights.output_bias[0] += 1e-6
+    assert intention_network(weights, {}).hash != before
+
+
+def test_facts_do_not_change_the_hash() -> None:
+    weights = random_weights(8, 1)
+    with_facts = intention_network(weights, {"drivers": 9})
+    assert with_facts.hash == intention_network(weights, {}).hash
+
+
+def altered(**changes: np.ndarray) -> NetworkWeights:
+    return random_weights(8, 1)._replace(**changes)
+
+
+@pytest.mark.parametrize(
+    ("weights", "words"),
+    [
+        (altered(input_weights=np.zeros((3, 8, 5))), "input_weights.*(3, 8, 5)"),
+        (altered(hidden_weights=np.zeros((3, 8, 9))), "hidden_weights.*(3, 8, 9)"),
+        (altered(output_weights=np.zeros(0)), "shape"),
+        (altered(output_bias=np.zeros(2)), "output_bias"),
+        (altered(input_bias=np.full((3, 8), np.nan)), "not finite"),
+        (altered(feature_scale=np.zeros(6)), "positive"),
+    ],
+)
+def test_weights_that_do_not_fit_are_refused(
+    weights: NetworkWeights, words: str
+) -> None:
+    with pytest.raises(ValueError, match=words.replace("(", r"\(").replace(")", r"\)")):
+        intention_network(weights, {})
+
+
+def test_damage_is_found(tmp_path: Path) -> None:
+    file = tmp_path / "weights.npz"
+    save_weights(file, network())
+    content = file.read_bytes()
+    for damaged in (content[: len(content) // 2], b"", b"not a file", content[::-1]):
+        file.write_bytes(damaged)
+        with pytest.raises(ValueError, match=r"not a file of intention weights"):
+            load_weights(file)
+
+
+def test_weights_changed_in_the_file_are_found(tmp_path: Path) -> None:
+    file = tmp_path / "weights.npz"
+    save_weights(file, network())
+    with np.load(file) as archive:
+        arrays = dict(archive)
+    arrays["output_bias"] = arrays["output_bias"] + np.float32(1.0)
+    np.savez(file, **arrays)
+    with pytest.raises(ValueError, match="altered"):
+        load_weights(file)
+
+
+def test_missing_arrays_are_named(tmp_path: Path) -> None:
+    file = tmp_path / "weights.npz"
+    save_weights(file, network())
+    with np.load(file) as archive:
+        arrays = {k: v for k, v in archive.items() if k != "hidden_bias"}
+    np.savez(file, **arrays)
+    with pytest.raises(ValueError, match="hidden_bias"):
+        load_weights(file)
+
+
+@pytest.mark.parametrize("change", [('"version": 1', '"version": 9'), ("yaw", "jaw")])
+def test_another_version_or_other_signals_are_refused(
+    tmp_path: Path, change: tuple[str, str]
+) -> None:
+    file = tmp_path / "weights.npz"
+    save_weights(file, network())
+    with np.load(file) as archive:
+        arrays = dict(archive)
+    header = arrays["header"].tobytes().decode().replace(*change)
+    arrays["header"] = np.frombuffer(header.encode(), np.uint8)
+    np.savez(file, **arrays)
+    with pytest.raises(ValueError, match="costeer train"):
+        load_weights(file)
+
+
+def test_an_interrupted_write_leaves_the_old_file(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    file = tmp_path / "weights.npz"
+    save_weights(file, network(seed=1))
+
+    def full_disk(path: Path, content: bytes) -> int:
+        with path.open("wb") as part:
+            part.write(content[:10])
+        raise OSError("No space left on device")
+
+    monkeypatch.setattr(Path, "write_bytes", full_disk)
+    with pytest.raises(OSError, match="No space"):
+        save_weights(file, network(seed=2))
+    monkeypatch.undo()
+    assert load_weights(file).facts == {"seed": 1}
+    assert list(tmp_path.iterdir()) == [file]
