@@ -31,7 +31,7 @@ def main() -> int:
     name = sys.argv[1] if len(sys.argv) == 2 else ""
     if name not in LOCKS:
         return complain(f"'{name}' is no lock; give one of {', '.join(LOCKS)}")
-    if sys.version_info < (3, 11):
+    if sys.version_info < (3, 11):  # noqa: UP036  because any Python may start this
         found = ".".join(map(str, sys.version_info[:3]))
         return complain(f"Python {found} is too old; make PYTHON=/path/to/python3.11")
     if any(is_fresh(lock) for lock in CONTAINED_IN[name]):

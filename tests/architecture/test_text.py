@@ -1,0 +1,69 @@
+"""What the repository says about itself is true, and nothing is left for later."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+
+import pytest
+
+from costeer.cli import CommandGroup
+from tests.architecture.source import ROOT
+
+PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
+CODE = re.compile(r"^```[a-z]*\n(.*?)^```", re.MULTILINE | re.DOTALL)
+LATER = re.compile("TO" + "DO|FIX" + "ME|X" + "XX")
+MACHINE = re.compile(r"(?<![\w.])/(?:work|root|home/\w+)/|/t" + "mp/[A-Za-z]")
+
+
+def kept_files() -> list[str]:
+    """Text files that git keeps, by their path in the repository."""
+    words = ["git", "ls-files", "*.py", "*.md", "*.toml", "*.yml", "*.yaml", "Makefile"]
+    listed = subprocess.run(
+        words, cwd=ROOT, capture_output=True, text=True, check=False
+    )
+    if listed.returncode != 0:
+        pytest.fail(f"git does not list the files: {listed.stderr}")
+    return [name for name in listed.stdout.split() if (ROOT / name).exists()]
+
+
+def code_lines(text: str) -> list[str]:
+    """Lines of the code blocks of a page."""
+    return [line for block in CODE.findall(text) for line in block.splitlines()]
+
+
+@pytest.mark.parametrize("pattern", [LATER, MACHINE], ids=["for later", "one machine"])
+def test_no_file_holds(pattern: re.Pattern[str]) -> None:
+    texts = {name: (ROOT / name).read_text("utf-8") for name in kept_files()}
+    assert texts
+    assert [name for name, text in texts.items() if pattern.search(text)] == []
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_commands_of_a_page_exist(page: str) -> None:
+    lines = code_lines((ROOT / page).read_text("utf-8"))
+    called = [
+        m[1] for line in lines if (m := re.match(r"(?:\$ )?costeer ([a-z]+)", line))
+    ]
+    assert [name for name in called if name not in CommandGroup.summaries] == []
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_make_targets_of_a_page_exist(page: str) -> None:
+    makefile = (ROOT / "Makefile").read_text("utf-8")
+    targets = set(re.findall(r"^([a-z][a-z-]*):", makefile, re.MULTILINE))
+    lines = code_lines((ROOT / page).read_text("utf-8"))
+    called = [m[1] for line in lines if (m := re.match(r"(?:\$ )?make ([a-z]+)", line))]
+    assert [name for name in called if name not in targets] == []
+
+
+def test_readme_shows_the_main_job() -> None:
+    lines = code_lines((ROOT / "README.md").read_text("utf-8"))
+    assert any(line.startswith("make study") for line in lines)
+
+
+def test_every_page_is_in_the_navigation() -> None:
+    navigation = (ROOT / "mkdocs.yml").read_text("utf-8")
+    pages = [p.relative_to(ROOT / "docs").as_posix() for p in PAGES[1:]]
+    assert pages
+    assert [page for page in pages if page not in navigation] == []

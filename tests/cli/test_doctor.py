@@ -1,0 +1,91 @@
+"""`costeer doctor` finds what is there and says how to mend what is not."""
+
+from __future__ import annotations
+
+import json
+import shutil
+from importlib.metadata import PackageNotFoundError
+from pathlib import Path
+from typing import NamedTuple
+
+import pytest
+
+from costeer import doctor
+from costeer.cli import main
+
+
+class Usage(NamedTuple):
+    """Room on a disk [B], as shutil tells it."""
+
+    total: int
+    used: int
+    free: int
+
+
+def test_a_machine_that_runs_the_tests_can_run_a_study(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    assert main(["doctor"]) == 0
+    shown = capsys.readouterr().out
+    assert "Numba engine: compiled and ran" in shown
+    assert "Packages: " in shown
+
+
+def test_json_holds_every_finding(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["doctor", "--json", "--out", str(tmp_path / "new" / "study")]) == 0
+    findings = json.loads(capsys.readouterr().out)
+    names = {finding["name"] for finding in findings}
+    assert {"Python", "Cores", "Memory", "Disk", "SIMD", "Timer", "Figures"} <= names
+    assert all(set(f) == {"name", "status", "detail", "remedy"} for f in findings)
+
+
+def test_what_is_missing_comes_with_a_remedy_and_exit_code_1(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(shutil, "disk_usage", lambda _: Usage(10, 9, 1))
+    assert main(["doctor"]) == 1
+    shown = capsys.readouterr().out
+    assert "missing   Disk: 0.0 GB free" in shown
+    assert "to mend: free 1 GB or choose another --out" in shown
+
+
+def test_an_absent_package_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    def absent(name: str) -> str:
+        raise PackageNotFoundError(name)
+
+    monkeypatch.setattr(doctor, "version", absent)
+    assert doctor.check_packages().status == "missing"
+    assert "numba" in doctor.check_packages().detail
+    assert doctor.check_extra("jax").remedy == "pip install 'costeer[jax]'"
+    assert doctor.check_extra("jax").status == "optional"
+
+
+def test_a_plain_install_needs_no_extra() -> None:
+    names = doctor.plain_requirements()
+    assert "numba" in names
+    assert not {"jax", "optax", "pytest", "highway-env"} & set(names)
+
+
+def test_little_memory_is_missing(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(doctor, "total_memory", lambda: 1.0e9)
+    assert doctor.check_memory().status == "missing"
+    monkeypatch.setattr(doctor, "total_memory", lambda: None)
+    assert doctor.check_memory().status == "ok"
+
+
+def test_unwritable_code_cache_is_told(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    blocker = tmp_path / "file"
+    blocker.write_text("")
+    monkeypatch.setattr("costeer.base.entry.cache_folder", lambda: blocker / "numba")
+    finding = doctor.check_cache()
+    assert finding.status == "optional"
+    assert "COSTEER_CACHE" in finding.remedy
+
+
+def test_old_python_is_missing(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(doctor, "OLDEST_PYTHON", (99, 0))
+    assert doctor.check_python().status == "missing"

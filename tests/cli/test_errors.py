@@ -1,0 +1,114 @@
+"""An error is one line on stderr and an exit code, never a traceback."""
+
+from __future__ import annotations
+
+import errno
+import os
+from collections.abc import Callable
+
+import pytest
+import typer
+
+from costeer.cli import main
+from costeer.cli.errors import exit_code_of
+
+
+def raising(error: BaseException) -> Callable[[], object]:
+    """A command that raises."""
+
+    def run() -> object:
+        raise error
+
+    return run
+
+
+def test_success_is_0() -> None:
+    assert exit_code_of(lambda: None) == 0
+
+
+def test_exit_code_of_a_command_is_handed_on() -> None:
+    assert exit_code_of(lambda: 1) == 1
+
+
+@pytest.mark.parametrize(
+    ("error", "said"),
+    [
+        (
+            ValueError("speed 0 m/s is too low;\n give 5 to 60"),
+            "speed 0 m/s is too low",
+        ),
+        (FileNotFoundError(errno.ENOENT, "x", "a.parquet"), "a.parquet: No such file"),
+        (OSError("not a Parquet file"), "not a Parquet file"),
+        (
+            OSError(errno.ENOSPC, "x", "out/a"),
+            "free some space and run the same command",
+        ),
+        (PermissionError(errno.EACCES, "x", "out"), "choose a place"),
+        (ModuleNotFoundError("x", name="optax"), "pip install 'costeer[train]'"),
+        (ValueError(), "ValueError"),
+    ],
+)
+def test_bad_input_is_one_line_and_2(
+    error: Exception, said: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert exit_code_of(raising(error)) == 2
+    shown = capsys.readouterr()
+    assert shown.out == ""
+    assert shown.err.count("\n") == 1
+    assert shown.err.startswith("costeer: ")
+    assert said in shown.err
+
+
+@pytest.mark.parametrize("error", [KeyboardInterrupt(), typer.Abort()])
+def test_interruption_is_130(
+    error: BaseException, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert exit_code_of(raising(error)) == 130
+    assert capsys.readouterr().err == "costeer: stopped\n"
+
+
+def test_interruption_inside_a_command_is_130(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(
+        "costeer.doctor.examine", lambda _: raising(KeyboardInterrupt())()
+    )
+    assert main(["doctor"]) == 130
+    assert capsys.readouterr().err == "costeer: stopped\n"
+
+
+def test_a_fault_of_the_program_is_not_hidden() -> None:
+    with pytest.raises(ZeroDivisionError):
+        exit_code_of(raising(ZeroDivisionError()))
+
+
+def test_a_missing_module_of_no_extra_is_not_hidden() -> None:
+    with pytest.raises(ModuleNotFoundError):
+        exit_code_of(raising(ModuleNotFoundError("x", name="costeer.nothing")))
+
+
+def test_traceback_is_shown_on_demand(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setenv("COSTEER_TRACEBACK", "1")
+    assert exit_code_of(raising(ValueError("no"))) == 2
+    assert "Traceback" in capsys.readouterr().err
+
+
+def test_unknown_command_names_the_nearest(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["docter"]) == 2
+    assert capsys.readouterr().err == (
+        "costeer: No such command 'docter'. Did you mean 'doctor'?\n"
+    )
+
+
+def test_unknown_option_is_refused(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["doctor", "--fast"]) == 2
+    assert "--fast" in capsys.readouterr().err
+
+
+def test_system_error_says_what_the_system_says(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    exit_code_of(raising(OSError(errno.EMFILE, "x")))
+    assert capsys.readouterr().err == f"costeer: {os.strerror(errno.EMFILE)}\n"

@@ -1,0 +1,86 @@
+"""`costeer --help` is quick and lists what there is."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+import time
+
+import pytest
+
+from costeer.cli import CommandGroup, main
+from costeer.cli.group import keep_example_lines, load_command
+
+HEAVY = ("numba", "numpy", "scipy", "pandas", "pyarrow", "matplotlib", "rich", "jax")
+COMMANDS = sorted(CommandGroup().commands)
+
+
+def run_python(code: str) -> subprocess.CompletedProcess[str]:
+    """Run code in a new interpreter, without what the tests imported."""
+    words = [sys.executable, "-c", code]
+    # Coverage of a subprocess would import more and tell nothing.
+    plain = {k: v for k, v in os.environ.items() if not k.startswith("COV_")}
+    return subprocess.run(words, capture_output=True, text=True, check=True, env=plain)
+
+
+def test_help_takes_under_a_second_and_a_half() -> None:
+    # Measured 0.10 s alone; the bound leaves room for a busy machine. Best of three.
+    durations = []
+    for _ in range(3):
+        start = time.perf_counter()
+        run_python("from costeer.cli import main; main(['--help'])")
+        durations.append(time.perf_counter() - start)
+    assert min(durations) < 1.5
+
+
+def test_help_imports_nothing_heavy() -> None:
+    code = "import sys; from costeer.cli import main; main(['--help']); "
+    shown = run_python(code + f"print([m for m in {HEAVY} if m in sys.modules])")
+    assert shown.stdout.splitlines()[-1] == "[]"
+
+
+def test_no_words_at_all_show_the_help(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main([]) == 0
+    assert "costeer study --out out/study" in capsys.readouterr().out
+
+
+def test_version_is_that_of_the_package(capsys: pytest.CaptureFixture[str]) -> None:
+    import costeer
+
+    assert main(["--version"]) == 0
+    assert capsys.readouterr().out == f"costeer {costeer.__version__}\n"
+
+
+def test_python_m_costeer_is_the_same_command() -> None:
+    words = [sys.executable, "-m", "costeer", "--version"]
+    done = subprocess.run(words, capture_output=True, text=True, check=False)
+    assert done.returncode == 0
+    assert done.stdout.startswith("costeer ")
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+def test_listed_line_is_the_first_of_the_commands_own_help(name: str) -> None:
+    own = (load_command("costeer.cli", name).help or "").splitlines()[0]
+    assert own == CommandGroup.summaries[name]
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+def test_help_of_a_command_ends_with_an_example(
+    name: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main([name, "--help"]) == 0
+    shown = capsys.readouterr().out
+    assert "Example" in shown
+    assert f"      costeer {name}" in shown
+
+
+def test_lines_of_an_example_are_not_joined() -> None:
+    assert keep_example_lines("Do.\n\nExample:\n    a\n    b") == (
+        "Do.\n\n\b\nExample:\n    a\n    b"
+    )
+
+
+def test_a_command_without_its_function_is_refused() -> None:
+    with pytest.raises(AttributeError):
+        load_command("costeer.cli", "validate")
