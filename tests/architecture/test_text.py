@@ -60,10 +60,3 @@ def test_make_targets_of_a_page_exist(page: str) -> None:
 def test_readme_shows_the_main_job() -> None:
     lines = code_lines((ROOT / "README.md").read_text("utf-8"))
     assert any(line.startswith("make study") for line in lines)
-
-
-def test_every_page_is_in_the_navigation() -> None:
-    navigation = (ROOT / "mkdocs.yml").read_text("utf-8")
-    pages = [p.relative_to(ROOT / "docs").as_posix() for p in PAGES[1:]]
-    assert pages
-    assert [page for page in pages if page not in navigation] == []
