@@ -1,0 +1,247 @@
+"""The array engine: one source for Python floats, NumPy, Numba and JAX.
+
+Every equation of costeer is a pure function of `Real`s on named tuples. This file
+binds that source to an engine. A function here looks at what it is given: a Python
+float goes to `math`, a NumPy array to NumPy, a traced JAX value to `jax.numpy`; in
+code compiled by Numba the overloads at the end stand in. See
+docs/decisions/0002-engine.md.
+"""
+
+from __future__ import annotations
+
+import math
+import sys
+from collections.abc import Callable
+from typing import Any, TypeAlias, TypeVar, cast
+
+import numpy as np
+from numba import types
+from numba.extending import overload, register_jitable
+
+Real: TypeAlias = float
+"""A float, an array of them or a traced value: annotations show the scalar."""
+
+Flag: TypeAlias = bool
+"""A bool, an array of them or a traced value."""
+
+Function = TypeVar("Function", bound=Callable[..., Any])
+State = TypeVar("State")
+Value = TypeVar("Value")
+Arguments = TypeVar("Arguments")
+
+
+def compiled(function: Function) -> Function:
+    """Mark a pure function as one that compiled code may call.
+
+    The function itself stays plain Python, so the Python and JAX engines run it as
+    it is written; Numba compiles it into whatever calls it.
+    """
+    return cast("Function", register_jitable(function))
+
+
+def _numpy_like(value: Any) -> Any:  # Any: this is where engines meet
+    """Return the module that computes with `value`: NumPy or jax.numpy."""
+    if isinstance(value, (np.ndarray, np.generic)):
+        return np
+    return sys.modules["jax.numpy"]
+
+
+def tanh(x: Real) -> Real:
+    """Hyperbolic tangent."""
+    if isinstance(x, (float, int)):
+        return math.tanh(x)
+    return cast("Real", _numpy_like(x).tanh(x))
+
+
+def sin(x: Real) -> Real:
+    """Sine of an angle in radians."""
+    if isinstance(x, (float, int)):
+        return math.sin(x)
+    return cast("Real", _numpy_like(x).sin(x))
+
+
+def cos(x: Real) -> Real:
+    """Cosine of an angle in radians."""
+    if isinstance(x, (float, int)):
+        return math.cos(x)
+    return cast("Real", _numpy_like(x).cos(x))
+
+
+def tan(x: Real) -> Real:
+    """Tangent of an angle in radians."""
+    if isinstance(x, (float, int)):
+        return math.tan(x)
+    return cast("Real", _numpy_like(x).tan(x))
+
+
+def atan(x: Real) -> Real:
+    """Angle in radians whose tangent is `x`."""
+    if isinstance(x, (float, int)):
+        return math.atan(x)
+    return cast("Real", _numpy_like(x).arctan(x))
+
+
+def sqrt(x: Real) -> Real:
+    """Square root."""
+    if isinstance(x, (float, int)):
+        return math.sqrt(x)
+    return cast("Real", _numpy_like(x).sqrt(x))
+
+
+def exp(x: Real) -> Real:
+    """Exponential function."""
+    if isinstance(x, (float, int)):
+        return math.exp(x)
+    return cast("Real", _numpy_like(x).exp(x))
+
+
+def floor(x: Real) -> Real:
+    """Largest whole number not above `x`, as a float."""
+    if isinstance(x, (float, int)):
+        return float(math.floor(x))
+    return cast("Real", _numpy_like(x).floor(x))
+
+
+def isfinite(x: Real) -> Flag:
+    """Whether `x` is neither infinite nor NaN."""
+    if isinstance(x, (float, int)):
+        return math.isfinite(x)
+    return cast("Flag", _numpy_like(x).isfinite(x))
+
+
+def minimum(a: Real, b: Real) -> Real:
+    """Smaller of the two."""
+    return select(a < b, a, b)
+
+
+def maximum(a: Real, b: Real) -> Real:
+    """Larger of the two."""
+    return select(a > b, a, b)
+
+
+def clip(x: Real, low: Real, high: Real) -> Real:
+    """`x` held between `low` and `high`."""
+    return minimum(maximum(x, low), high)
+
+
+def logical_not(flag: Flag) -> Flag:
+    """Whether `flag` is false; `not` would refuse arrays, `~True` is -2."""
+    return flag == False  # noqa: E712  because `not` cannot be traced
+
+
+def select(condition: Flag, if_true: Value, if_false: Value) -> Value:
+    """Return one of two values by a flag: `if` that arrays and compilers accept."""
+    if isinstance(condition, (bool, np.bool_)):
+        return if_true if condition else if_false
+    return cast("Value", _numpy_like(condition).where(condition, if_true, if_false))
+
+
+def repeat(
+    function: Callable[[State, Arguments], State],
+    times: int,
+    state: State,
+    arguments: Arguments,
+) -> State:
+    """Apply `state = function(state, arguments)` a whole number of times."""
+    if _is_traced(state):
+        return _repeat_traced(function, times, state, arguments)
+    for _ in range(times):
+        state = function(state, arguments)
+    return state
+
+
+def _is_traced(state: Any) -> bool:  # Any: a tree of whatever the engine uses
+    """Whether any leaf of the tree belongs to JAX."""
+    jax = sys.modules.get("jax")
+    if jax is None:
+        return False
+    return any(isinstance(leaf, jax.Array) for leaf in jax.tree_util.tree_leaves(state))
+
+
+def _repeat_traced(function: Any, times: int, state: Any, arguments: Any) -> Any:
+    """`repeat` as one loop of the XLA compiler, instead of `times` copies."""
+    import jax
+
+    state = jax.tree_util.tree_map(jax.numpy.asarray, state)
+    return jax.lax.fori_loop(0, times, lambda _, s: function(s, arguments), state)
+
+
+def add_scaled(state: State, rate: State, step: Real) -> State:
+    """Return `state + step * rate`, field by field, for named tuples of `Real`s."""
+    fields = zip(cast("Any", state), cast("Any", rate), strict=True)
+    return cast("Any", type(state))(*(value + step * slope for value, slope in fields))
+
+
+_MATH: dict[Callable[..., Any], Callable[..., Any]] = {
+    tanh: math.tanh,
+    sin: math.sin,
+    cos: math.cos,
+    tan: math.tan,
+    atan: math.atan,
+    sqrt: math.sqrt,
+    exp: math.exp,
+    isfinite: math.isfinite,
+}
+
+
+def _bind(function: Callable[..., Any], target: Callable[..., Any]) -> None:
+    """Let Numba use `target` where the source says `function`."""
+
+    @overload(function, strict=False)
+    def _(x: Any) -> Any:
+        return lambda x: target(x)
+
+
+for _function, _target in _MATH.items():
+    _bind(_function, _target)
+
+
+@overload(floor, strict=False)
+def _floor(x: Any) -> Any:
+    return lambda x: float(math.floor(x))
+
+
+@overload(minimum, strict=False)
+def _minimum(a: Any, b: Any) -> Any:
+    return lambda a, b: a if a < b else b
+
+
+@overload(maximum, strict=False)
+def _maximum(a: Any, b: Any) -> Any:
+    return lambda a, b: a if a > b else b
+
+
+@overload(clip, strict=False)
+def _clip(x: Any, low: Any, high: Any) -> Any:
+    return lambda x, low, high: minimum(maximum(x, low), high)
+
+
+@overload(logical_not, strict=False)
+def _logical_not(flag: Any) -> Any:
+    return lambda flag: not flag
+
+
+@overload(select, strict=False)
+def _select(condition: Any, if_true: Any, if_false: Any) -> Any:
+    return lambda condition, if_true, if_false: if_true if condition else if_false
+
+
+@overload(repeat, strict=False)
+def _repeat(function: Any, times: Any, state: Any, arguments: Any) -> Any:
+    def implementation(function: Any, times: Any, state: Any, arguments: Any) -> Any:
+        for _ in range(times):
+            state = function(state, arguments)
+        return state
+
+    return implementation
+
+
+@overload(add_scaled, strict=False)
+def _add_scaled(state: Any, rate: Any, step: Any) -> Any:
+    if not isinstance(state, types.BaseNamedTuple):
+        return None
+    terms = ", ".join(f"state.{f} + step * rate.{f}" for f in state.fields)
+    source = f"def implementation(state, rate, step):\n    return Tuple({terms})\n"
+    names: dict[str, Any] = {"Tuple": state.instance_class}
+    exec(source, names)  # noqa: S102  no other way to write out a tuple's fields
+    return names["implementation"]

@@ -1,0 +1,68 @@
+"""Compiled entry points and where their machine code is kept.
+
+Numba's own cache looks only at the file of the entry function, so that an edit to an
+equation it calls would go unseen. Here the cache folder bears a hash of all of
+costeer's sources: any edit makes a new folder (tests/base/test_entry.py).
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import shutil
+import tempfile
+from collections.abc import Callable
+from functools import cache
+from pathlib import Path
+from typing import Any, TypeVar, cast
+
+import numba
+
+Function = TypeVar("Function", bound=Callable[..., Any])
+_KEPT_FOLDERS = 3
+
+
+def source_hash(package: Path) -> str:
+    """Return a hash of every Python file below `package`, in path order."""
+    digest = hashlib.sha256()
+    for file in sorted(package.rglob("*.py")):
+        digest.update(str(file.relative_to(package)).encode())
+        digest.update(file.read_bytes())
+    return digest.hexdigest()[:16]
+
+
+@cache
+def cache_folder() -> Path:
+    """Return the folder for machine code: COSTEER_CACHE, else the user's cache."""
+    home = os.environ.get("XDG_CACHE_HOME") or str(Path.home() / ".cache")
+    root = Path(os.environ.get("COSTEER_CACHE") or Path(home) / "costeer") / "numba"
+    folder = root / source_hash(Path(__file__).parents[1])
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        _forget_old(root, folder)
+    except OSError:
+        return Path(tempfile.gettempdir()) / "costeer-numba" / folder.name
+    return folder
+
+
+def _forget_old(root: Path, current: Path) -> None:
+    """Remove all but the newest few folders of earlier sources."""
+    others = [f for f in root.iterdir() if f.is_dir() and f != current]
+    others.sort(key=lambda folder: folder.stat().st_mtime, reverse=True)
+    for folder in others[_KEPT_FOLDERS - 1 :]:
+        shutil.rmtree(folder, ignore_errors=True)
+
+
+def entry(function: Function) -> Function:
+    """Compile a function that Python calls; its machine code is cached on disk.
+
+    The compiled function releases the global interpreter lock, so threads run trials
+    side by side.
+    """
+    before = numba.config.CACHE_DIR
+    numba.config.CACHE_DIR = str(cache_folder())
+    try:
+        decorate = numba.njit(cache=True, nogil=True, error_model="numpy")
+        return cast("Function", decorate(function))
+    finally:
+        numba.config.CACHE_DIR = before

@@ -1,0 +1,194 @@
+"""One step of the controller: the stages of the paper in their order."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from costeer.base.array import Flag, Real, compiled
+from costeer.controller import (
+    actuation,
+    consistency,
+    guidance,
+    inference,
+    preview,
+    replanning,
+    strength,
+    trajectory,
+)
+from costeer.controller.actuation import ActuationParameters, ActuationState
+from costeer.controller.consistency import ConsistencyParameters, ConsistencyState
+from costeer.controller.guidance import GuidanceParameters
+from costeer.controller.inference import InferenceParameters, InferenceState
+from costeer.controller.preview import PreviewParameters
+from costeer.controller.replanning import ReplanningParameters
+from costeer.controller.signals import Intention, Signals, Target
+from costeer.controller.strength import StrengthParameters, StrengthState
+from costeer.controller.trajectory import TrajectoryParameters, TrajectoryState
+from costeer.plant.parameters import CarParameters, ColumnParameters, RoadParameters
+from costeer.sensing.measurement import Measurement
+
+
+class ControllerParameters(NamedTuple):
+    """All stages, and the nominal car, column and road that the controller knows.
+
+    Attributes:
+        car: Nominal car [SI units]. Source: plant/parameters.py.
+        column: Nominal column [SI units]. Source: plant/parameters.py.
+        road: Lanes [SI units]. Source: plant/parameters.py.
+        inference: Trigger and lock [SI units]. Source: Sec. II-B.
+        trajectory: Duration of a lane change [SI units]. Source: Eq. (3).
+        preview: Preview time [SI units]. Source: Fig. 4.
+        guidance: Gains [SI units]. Source: Eq. (5).
+        consistency: Threshold [SI units]. Source: Table III.
+        strength: Fade [SI units]. Source: Eqs. (10) and (11).
+        replanning: When to plan anew [SI units]. Source: Sec. II-E.
+        actuation: Strength and limits [SI units]. Source: Eq. (6), Table IV.
+    """
+
+    car: CarParameters = CarParameters()
+    column: ColumnParameters = ColumnParameters()
+    road: RoadParameters = RoadParameters()
+    inference: InferenceParameters = InferenceParameters()
+    trajectory: TrajectoryParameters = TrajectoryParameters()
+    preview: PreviewParameters = PreviewParameters()
+    guidance: GuidanceParameters = GuidanceParameters()
+    consistency: ConsistencyParameters = ConsistencyParameters()
+    strength: StrengthParameters = StrengthParameters()
+    replanning: ReplanningParameters = ReplanningParameters()
+    actuation: ActuationParameters = ActuationParameters()
+
+
+class ControllerState(NamedTuple):
+    """All that the stages remember.
+
+    Attributes:
+        inference: Trigger and lock.
+        trajectory: Mode and plan.
+        consistency: Pseudo-work windows.
+        strength: Fade.
+        actuation: Last torque.
+        replan: Whether the step before called for a new plan.
+    """
+
+    inference: InferenceState
+    trajectory: TrajectoryState
+    consistency: ConsistencyState
+    strength: StrengthState
+    actuation: ActuationState
+    replan: Flag
+
+
+@compiled
+def initial_state(road: RoadParameters, lane: Real) -> ControllerState:
+    """Lane keeping in `lane`, full gain, consistent."""
+    return ControllerState(
+        inference=inference.initial_state(),
+        trajectory=trajectory.initial_state(road, lane),
+        consistency=consistency.initial_state(),
+        strength=strength.initial_state(),
+        actuation=actuation.initial_state(),
+        replan=False,
+    )
+
+
+@compiled
+def plan(
+    parameters: ControllerParameters,
+    state: ControllerState,
+    measurement: Measurement,
+    crossing_probability: Real,
+    requested: Flag,
+    dt: Real,
+) -> tuple[InferenceState, Intention, TrajectoryState, Target]:
+    """Infer the intention, choose mode and path.
+
+    Args:
+        parameters: Of all stages.
+        state: Of all stages.
+        measurement: This step's sample.
+        crossing_probability: Of the intention network; NaN for no verdict [-].
+        requested: A lane change asked for from outside counts as an intention.
+        dt: Control step [s].
+    """
+    inference_state, inferred = inference.step(
+        parameters.inference,
+        state.inference,
+        parameters.road,
+        measurement,
+        crossing_probability,
+        state.trajectory.path_ended,
+        dt,
+    )
+    intention = Intention(detected=inferred.detected | requested, side=inferred.side)
+    trajectory_state, target = trajectory.step(
+        parameters.trajectory,
+        state.trajectory,
+        parameters.road,
+        measurement,
+        intention,
+        state.consistency.consistent,
+        state.replan,
+    )
+    return inference_state, intention, trajectory_state, target
+
+
+@compiled
+def step(
+    parameters: ControllerParameters,
+    state: ControllerState,
+    measurement: Measurement,
+    crossing_probability: Real,
+    requested: Flag,
+    dt: Real,
+) -> tuple[ControllerState, Signals]:
+    """Run all stages once; return the state and everything they computed.
+
+    Args:
+        parameters: Of all stages.
+        state: Of all stages.
+        measurement: This step's sample.
+        crossing_probability: Of the intention network; NaN for no verdict [-].
+        requested: A lane change asked for from outside counts as an intention.
+        dt: Control step [s].
+    """
+    inference_state, intention, trajectory_state, target = plan(
+        parameters, state, measurement, crossing_probability, requested, dt
+    )
+    errors = preview.preview(parameters.preview, parameters.car, target, measurement)
+    torques = guidance.guide(
+        parameters.guidance, parameters.car, parameters.column, errors
+    )
+    consistency_state, verdict = consistency.step(
+        parameters.consistency,
+        state.consistency,
+        torques.instructed_torque,
+        measurement.driver_torque,
+        errors.heading_error_rate,
+        dt,
+    )
+    strength_state, gain = strength.step(
+        parameters.strength, state.strength, verdict.consistent, dt
+    )
+    replan = replanning.replan(parameters.replanning, gain, verdict.consistent)
+    actuation_state, torque = actuation.step(
+        parameters.actuation, state.actuation, gain, torques.instructed_torque, dt
+    )
+    new_state = ControllerState(
+        inference=inference_state,
+        trajectory=trajectory_state,
+        consistency=consistency_state,
+        strength=strength_state,
+        actuation=actuation_state,
+        replan=replan,
+    )
+    return new_state, Signals(
+        crossing_probability=crossing_probability,
+        intention=intention.detected,
+        target=target,
+        preview=errors,
+        guidance=torques,
+        consistency=verdict,
+        haptic_gain=gain,
+        replan=replan,
+        applied_torque=torque,
+    )

@@ -1,0 +1,174 @@
+"""Assistance mode and target: lane centre or Bezier path (Eq. (3), Fig. 3)."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from costeer.base import array as xp
+from costeer.base.array import Flag, Real, compiled
+from costeer.base.bezier import Quintic, path_point, quintic
+from costeer.controller.signals import (
+    LANE_CHANGING,
+    LANE_KEEPING,
+    Intention,
+    Target,
+)
+from costeer.plant.parameters import RoadParameters
+from costeer.plant.road import lane_centre
+from costeer.sensing.measurement import Measurement
+
+_SLOWEST = 1.0
+"""Paths are planned as if the car were at least this fast [m/s]."""
+
+
+class TrajectoryParameters(NamedTuple):
+    """How a lane change is planned.
+
+    Attributes:
+        change_duration: ΔT_LC [s]. Source: paper, rapid 4, normal 6, gentle 8.
+    """
+
+    change_duration: Real = 6.0
+
+
+class TrajectoryState(NamedTuple):
+    """The plan that is followed.
+
+    Attributes:
+        mode: `LANE_KEEPING` or `LANE_CHANGING` [-].
+        lane: That the plan ends in; latched, a line that is crossed without a
+            trigger does not move it [-].
+        path: Of the last lane change.
+        path_ended: Whether it came to its end at the last step.
+    """
+
+    mode: Real
+    lane: Real
+    path: Quintic
+    path_ended: Flag
+
+
+@compiled
+def initial_state(road: RoadParameters, lane: Real) -> TrajectoryState:
+    """Lane keeping in `lane`."""
+    centre = lane_centre(road, lane)
+    return TrajectoryState(
+        mode=LANE_KEEPING,
+        lane=lane,
+        path=quintic(0.0, 1.0, centre, 0.0, 0.0, centre),
+        path_ended=False,
+    )
+
+
+@compiled
+def plan_path(
+    parameters: TrajectoryParameters,
+    road: RoadParameters,
+    measurement: Measurement,
+    lane: Real,
+) -> Quintic:
+    """Path from the car to the centre of `lane`: Eq. (3).
+
+    Its first three control points match the car's position, slope and curvature, its
+    last three lie on the new lane's centre; it is V_x · change_duration long.
+    """
+    speed = xp.maximum(measurement.longitudinal_velocity, _SLOWEST)
+    return quintic(
+        measurement.longitudinal_position,
+        speed * parameters.change_duration,
+        measurement.lateral_position,
+        xp.tan(measurement.yaw_angle),
+        measurement.yaw_rate / speed,
+        lane_centre(road, lane),
+    )
+
+
+@compiled
+def _select_path(flag: Flag, if_true: Quintic, if_false: Quintic) -> Quintic:
+    """One of two paths by a flag, field by field."""
+    return Quintic(
+        start=xp.select(flag, if_true.start, if_false.start),
+        length=xp.select(flag, if_true.length, if_false.length),
+        y0=xp.select(flag, if_true.y0, if_false.y0),
+        y1=xp.select(flag, if_true.y1, if_false.y1),
+        y2=xp.select(flag, if_true.y2, if_false.y2),
+        y3=xp.select(flag, if_true.y3, if_false.y3),
+        y4=xp.select(flag, if_true.y4, if_false.y4),
+        y5=xp.select(flag, if_true.y5, if_false.y5),
+    )
+
+
+@compiled
+def choose_mode(
+    parameters: TrajectoryParameters,
+    state: TrajectoryState,
+    road: RoadParameters,
+    measurement: Measurement,
+    intention: Intention,
+    consistent: Flag,
+    replan: Flag,
+) -> TrajectoryState:
+    """Mode and plan of this step.
+
+    Args:
+        parameters: Duration of a lane change.
+        state: Plan of the step before.
+        road: Its lanes.
+        measurement: Where the car is.
+        intention: Trigger and side.
+        consistent: Verdict of the step before.
+        replan: Whether the step before called for a new plan.
+    """
+    changing = state.mode == LANE_CHANGING
+    travelled = measurement.longitudinal_position - state.path.start
+    ended = changing & (travelled >= state.path.length)
+    to_keeping = ended | replan
+    keeping = to_keeping | xp.logical_not(changing)
+    started = keeping & intention.detected & consistent & xp.logical_not(to_keeping)
+    kept_lane = xp.select(to_keeping, measurement.lane, state.lane)
+    lane = xp.select(started, measurement.lane + intention.side, kept_lane)
+    new_path = plan_path(parameters, road, measurement, lane)
+    mode = xp.select(keeping, LANE_KEEPING, LANE_CHANGING)
+    return TrajectoryState(
+        mode=xp.select(started, LANE_CHANGING, mode),
+        lane=lane,
+        path=_select_path(started, new_path, state.path),
+        path_ended=ended & xp.logical_not(replan),
+    )
+
+
+@compiled
+def target(
+    state: TrajectoryState, road: RoadParameters, measurement: Measurement
+) -> Target:
+    """Planned motion at the car's place, position, slope and curvature closed form."""
+    point = path_point(state.path, measurement.longitudinal_position)
+    changing = state.mode == LANE_CHANGING
+    centre = lane_centre(road, state.lane)
+    along = measurement.longitudinal_velocity * point.curvature_slope
+    return Target(
+        mode=state.mode,
+        lane=state.lane,
+        lateral_position=xp.select(changing, point.lateral_position, centre),
+        heading=xp.select(changing, xp.atan(point.slope), 0.0),
+        curvature=xp.select(changing, point.curvature, 0.0),
+        curvature_rate=xp.select(changing, along, 0.0),
+        path=state.path,
+    )
+
+
+@compiled
+def step(
+    parameters: TrajectoryParameters,
+    state: TrajectoryState,
+    road: RoadParameters,
+    measurement: Measurement,
+    intention: Intention,
+    consistent: Flag,
+    replan: Flag,
+) -> tuple[TrajectoryState, Target]:
+    """Choose mode and plan; return the state and the target at the car."""
+    new_state = choose_mode(
+        parameters, state, road, measurement, intention, consistent, replan
+    )
+    return new_state, target(new_state, road, measurement)

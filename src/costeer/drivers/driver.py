@@ -1,0 +1,341 @@
+"""A virtual driver: eyes, decision, head, foot and hands in one step at 60 Hz."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from costeer.base import array as xp
+from costeer.base.array import Real, compiled
+from costeer.drivers import (
+    decision,
+    gaze,
+    longitudinal,
+    reliance,
+    tracking,
+    vision,
+)
+from costeer.drivers.arm import ArmCommand, ArmParameters, wanted_torque
+from costeer.drivers.decision import DecisionParameters, DecisionState, Draws
+from costeer.drivers.gaze import GazeDraws, GazeParameters, GazeState
+from costeer.drivers.longitudinal import (
+    LongitudinalParameters,
+    LongitudinalState,
+    Pedals,
+)
+from costeer.drivers.reliance import RelianceParameters, RelianceState
+from costeer.drivers.tracking import TrackingParameters, TrackingState
+from costeer.drivers.vision import VisionParameters, VisionState
+from costeer.plant.parameters import (
+    CarParameters,
+    ColumnParameters,
+    RoadParameters,
+    holding_stiffness,
+)
+from costeer.plant.road import cruising_lane
+from costeer.plant.traffic import LeaderState
+from costeer.sensing.measurement import Measurement
+
+
+class DriverParameters(NamedTuple):
+    """One driver.
+
+    Attributes:
+        vision: Eyes to intended angle [SI units]. Source: drivers/vision.py.
+        arm: Intended angle to torque [SI units]. Source: drivers/arm.py.
+        reliance: Hands that feel [SI units]. Source: drivers/reliance.py.
+        tracking: Tolerance of lane position [SI units]. Source: drivers/tracking.py.
+        decision: When to change lanes [SI units]. Source: drivers/decision.py.
+        gaze: Glances [SI units]. Source: drivers/gaze.py.
+        longitudinal: Speed [SI units]. Source: drivers/longitudinal.py.
+    """
+
+    vision: VisionParameters = VisionParameters()
+    arm: ArmParameters = ArmParameters()
+    reliance: RelianceParameters = RelianceParameters()
+    tracking: TrackingParameters = TrackingParameters()
+    decision: DecisionParameters = DecisionParameters()
+    gaze: GazeParameters = GazeParameters()
+    longitudinal: LongitudinalParameters = LongitudinalParameters()
+
+
+class DriverState(NamedTuple):
+    """What the driver remembers; `arm` is the muscle torque [N·m]."""
+
+    vision: VisionState
+    arm: Real
+    reliance: RelianceState
+    tracking: TrackingState
+    decision: DecisionState
+    gaze: GazeState
+    longitudinal: LongitudinalState
+
+
+class Knowledge(NamedTuple):
+    """What the driver knows by experience: car, wheel and road."""
+
+    car: CarParameters
+    column: ColumnParameters
+    road: RoadParameters
+
+
+class Perception(NamedTuple):
+    """What reaches the driver in one step.
+
+    Attributes:
+        measurement: Motion of the car, as seen and felt.
+        leader: The car ahead.
+        guidance_torque: At the wheel, felt by the hands [N·m].
+    """
+
+    measurement: Measurement
+    leader: LeaderState
+    guidance_torque: Real
+
+
+class DriverNoise(NamedTuple):
+    """Random numbers of one control step: standard normal, `_uniform` in [0, 1).
+
+    `NORMAL_DRAWS` of them come first.
+    """
+
+    near: Real
+    motor: Real
+    wander: Real
+    speed: Real
+    head_drift: Real
+    head_tracker: Real
+    glance_amplitude: Real
+    change_duration: Real
+    preparation_time: Real
+    look_uniform: Real
+    glance_uniform: Real
+    glance_side_uniform: Real
+    leader_uniform: Real
+
+
+NORMAL_DRAWS = 9
+"""Fields of `DriverNoise` that are standard normal."""
+
+
+class Action(NamedTuple):
+    """What the driver does until the next step.
+
+    Attributes:
+        arm: Command to the arms.
+        pedals: Accelerator and brake.
+        head_yaw: In [-1, 1], left positive [-].
+        intention: Side of the decided lane change, -1 right, 0 none, +1 left [-].
+        time_to_crossing: Until the planned path crosses the line [s].
+    """
+
+    arm: ArmCommand
+    pedals: Pedals
+    head_yaw: Real
+    intention: Real
+    time_to_crossing: Real
+
+
+@compiled
+def initial_state(lateral_position: Real) -> DriverState:
+    """A driver who aims at `lateral_position` [m]."""
+    return DriverState(
+        vision=vision.initial_state(),
+        arm=0.0,
+        reliance=reliance.initial_state(),
+        tracking=tracking.initial_state(lateral_position),
+        decision=decision.initial_state(),
+        gaze=gaze.initial_state(),
+        longitudinal=longitudinal.initial_state(),
+    )
+
+
+@compiled
+def decide(
+    parameters: DriverParameters,
+    state: DriverState,
+    perception: Perception,
+    noise: DriverNoise,
+    dt: Real,
+) -> DecisionState:
+    """Overtake, return or go on."""
+    draws = Draws(
+        duration_normal=noise.change_duration,
+        preparation_normal=noise.preparation_time,
+        glance_uniform=noise.look_uniform,
+    )
+    return decision.step(
+        parameters.decision,
+        state.decision,
+        perception.measurement,
+        perception.leader,
+        draws,
+        dt,
+    )
+
+
+@compiled
+def look(
+    parameters: DriverParameters,
+    state: DriverState,
+    decided: DecisionState,
+    direction: Real,
+    noise: DriverNoise,
+    dt: Real,
+) -> GazeState:
+    """Turn the head."""
+    draws = GazeDraws(
+        start_uniform=noise.glance_uniform,
+        side_uniform=noise.glance_side_uniform,
+        amplitude_normal=noise.glance_amplitude,
+        drift_normal=noise.head_drift,
+    )
+    return gaze.step(parameters.gaze, state.gaze, decided, direction, draws, dt)
+
+
+@compiled
+def aim(
+    parameters: DriverParameters,
+    state: DriverState,
+    knowledge: Knowledge,
+    measurement: Measurement,
+    decided: DecisionState,
+    noise: DriverNoise,
+    dt: Real,
+) -> TrackingState:
+    """Let the aim wander and, when steering starts, plan the own path."""
+    wandered = tracking.wander(parameters.tracking, state.tracking, noise.wander, dt)
+    road = knowledge.road
+    away = xp.select(decided.phase == decision.CHANGING, road.overtaking_side, 0.0)
+    path = tracking.planned(
+        parameters.tracking,
+        road,
+        measurement,
+        cruising_lane(road) + away,
+        decided.change_duration,
+    )
+    return TrackingState(
+        path=tracking.select_path(decided.started, path, wandered.path),
+        wander=wandered.wander,
+        wander_rate=wandered.wander_rate,
+    )
+
+
+@compiled
+def see(
+    parameters: DriverParameters,
+    state: DriverState,
+    knowledge: Knowledge,
+    measurement: Measurement,
+    aimed: TrackingState,
+    noise: DriverNoise,
+    dt: Real,
+) -> tuple[VisionState, Real]:
+    """Turn what is seen into an intended steering-wheel angle [rad]."""
+    eyes = parameters.vision
+    speed = xp.maximum(measurement.longitudinal_velocity, 1.0)
+    near_distance = speed * eyes.near_time
+    wanted = tracking.aim(
+        aimed,
+        measurement.longitudinal_position,
+        near_distance,
+        speed * eyes.anticipation_time,
+    )
+    angle = vision.near_angle(measurement, wanted.near_position, near_distance)
+    new_state, compensation = vision.step(
+        eyes, state.vision, angle, noise.near, noise.motor, dt
+    )
+    intended = vision.intended_angle(
+        eyes, knowledge.car, measurement, wanted, compensation
+    )
+    return new_state, intended + new_state.motor_noise
+
+
+@compiled
+def feel(
+    parameters: DriverParameters,
+    state: DriverState,
+    knowledge: Knowledge,
+    perception: Perception,
+    intended_angle: Real,
+    dt: Real,
+) -> tuple[RelianceState, ArmCommand]:
+    """Judge the guidance by the hands; return their state and the arm's command."""
+    measurement = perception.measurement
+    stiffness = holding_stiffness(
+        knowledge.car,
+        knowledge.column,
+        xp.maximum(measurement.longitudinal_velocity, 1.0),
+    )
+    relaxed = ArmCommand(
+        intended_angle=intended_angle,
+        holding_stiffness=stiffness,
+        stiffening=1.0,
+        guidance=0.0,
+        reliance=0.0,
+    )
+    wanted = wanted_torque(parameters.arm, relaxed, measurement.steering_wheel_angle)
+    hands = reliance.step(
+        parameters.reliance, state.reliance, perception.guidance_torque, wanted, dt
+    )
+    return hands, ArmCommand(
+        intended_angle=intended_angle,
+        holding_stiffness=stiffness,
+        stiffening=hands.stiffening,
+        guidance=hands.felt_guidance,
+        reliance=parameters.reliance.reliance,
+    )
+
+
+@compiled
+def act(
+    parameters: DriverParameters,
+    state: DriverState,
+    knowledge: Knowledge,
+    perception: Perception,
+    noise: DriverNoise,
+    dt: Real,
+) -> tuple[DriverState, Action]:
+    """One control step of the whole driver.
+
+    Args:
+        parameters: Of this driver.
+        state: Of this driver.
+        knowledge: Car, wheel and road, known by experience.
+        perception: What reaches eyes and hands.
+        noise: Random numbers of this step.
+        dt: Control step [s].
+    """
+    measurement = perception.measurement
+    decided = decide(parameters, state, perception, noise, dt)
+    direction = decision.direction(decided, knowledge.road.overtaking_side)
+    head = look(parameters, state, decided, direction, noise, dt)
+    aimed = aim(parameters, state, knowledge, measurement, decided, noise, dt)
+    eyes, intended = see(parameters, state, knowledge, measurement, aimed, noise, dt)
+    hands, command = feel(parameters, state, knowledge, perception, intended, dt)
+    foot = longitudinal.step(
+        parameters.longitudinal,
+        state.longitudinal,
+        measurement,
+        perception.leader,
+        decided,
+        noise.speed,
+        dt,
+    )
+    new_state = DriverState(
+        vision=eyes,
+        arm=state.arm,
+        reliance=hands,
+        tracking=aimed,
+        decision=decided,
+        gaze=head,
+        longitudinal=foot,
+    )
+    return new_state, Action(
+        arm=command,
+        pedals=longitudinal.pedals(
+            knowledge.car, foot.wanted_acceleration, measurement.longitudinal_velocity
+        ),
+        head_yaw=gaze.head_yaw(parameters.gaze, head),
+        intention=direction,
+        time_to_crossing=decision.time_to_crossing(decided),
+    )

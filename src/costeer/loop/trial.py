@@ -1,0 +1,223 @@
+"""One trial from its setup to its record."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from functools import cache
+from importlib import metadata as distribution
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from costeer.base.array import Real
+from costeer.drivers.population import POPULATION_VERSION
+from costeer.intention.features import NUM_FEATURES
+from costeer.intention.gru import NetworkWeights
+from costeer.intention.wavefront import (
+    WavefrontWeights,
+    wavefront_weights,
+)
+from costeer.intention.wavefront import initial_state as network_memory
+from costeer.intention.weights import IntentionNetwork, load_weights
+from costeer.loop.columns import COLUMNS, MODES, Column, TrialRecord
+from costeer.loop.noise import driver_noise
+from costeer.loop.rollout import Script, rollout
+from costeer.loop.rows import Row
+from costeer.loop.scenario import (
+    INTENTIONS,
+    TrialSetup,
+    is_assisted,
+    loop_parameters,
+)
+from costeer.loop.step import DT, LoopParameters
+
+SLOWEST_SHARE = 0.5
+"""A trial ends at the latest when a car at this share of its speed would arrive."""
+
+GUIDANCE_COLUMNS = (
+    "target_lane",
+    "estimated_driver_torque",
+    "instructed_torque",
+    "haptic_gain",
+    "lateral_error",
+    "heading_error_rate",
+    "guidance_pseudo_work",
+    "driver_pseudo_work",
+    "torque_agreement",
+    "consistent",
+    "target_lateral_position",
+)
+"""Columns that are empty without assistance."""
+
+
+@cache
+def shipped_network() -> IntentionNetwork:
+    """The network that ships with costeer, read once."""
+    return load_weights()
+
+
+@cache
+def _shipped_weights() -> WavefrontWeights:
+    """The shipped network as the kernel takes it."""
+    return wavefront_weights(shipped_network().weights)
+
+
+@cache
+def _idle_weights() -> WavefrontWeights:
+    """Two units of zeros, for trials that ask no network."""
+    units = 2
+    return wavefront_weights(
+        NetworkWeights(
+            feature_mean=np.zeros(NUM_FEATURES),
+            feature_scale=np.ones(NUM_FEATURES),
+            input_weights=np.zeros((3, units, NUM_FEATURES), np.float32),
+            hidden_weights=np.zeros((3, units, units), np.float32),
+            input_bias=np.zeros((3, units), np.float32),
+            hidden_bias=np.zeros((3, units), np.float32),
+            output_weights=np.zeros(units, np.float32),
+            output_bias=np.zeros(1, np.float32),
+        )
+    )
+
+
+def _predictor(
+    setup: TrialSetup, network: IntentionNetwork | None
+) -> tuple[WavefrontWeights, str | None]:
+    """Packed weights of the network that a trial asks, and its hash."""
+    if setup.intention != "network":
+        return _idle_weights(), None
+    if network is not None:
+        return wavefront_weights(network.weights), network.hash
+    return _shipped_weights(), shipped_network().hash
+
+
+def simulate_trial(
+    setup: TrialSetup,
+    engine: str = "numba",
+    network: IntentionNetwork | None = None,
+) -> TrialRecord:
+    """Run one trial.
+
+    Args:
+        setup: What the trial is.
+        engine: "numba" or "python"; both give the same numbers.
+        network: Of the intention; the shipped one if None.
+
+    Returns:
+        Its record; the same setup and version give the same record.
+
+    Raises:
+        ValueError: If the setup cannot be run or the engine is not known.
+    """
+    parameters = loop_parameters(setup)
+    packed, network_hash = _predictor(setup, network)
+    longest = setup.length / (SLOWEST_SHARE * setup.speed)
+    noise = driver_noise(
+        setup.seed, setup.participant, setup.condition, int(np.ceil(longest / DT))
+    )
+    script = Script(
+        intention=INTENTIONS[setup.intention],
+        trigger_times=np.array(sorted(setup.trigger_times), dtype=np.float64),
+    )
+    rows = rollout(parameters, script, packed, network_memory(packed), noise, engine)
+    return TrialRecord(
+        metadata=_metadata(setup, parameters, network_hash),
+        columns=record_columns(rows, is_assisted(setup)),
+    )
+
+
+def record_columns(
+    rows: NDArray[np.float64], assisted: bool
+) -> dict[str, NDArray[Any]]:
+    """Rows of the loop as the columns of a record.
+
+    Args:
+        rows: In the order of `Row`, shape `(time, column)`.
+        assisted: Without assistance the guidance columns are empty.
+    """
+    columns = {}
+    for column in COLUMNS:
+        values = np.ascontiguousarray(rows[:, Row._fields.index(column.name)])
+        if column.name == "mode":
+            columns["mode"] = np.array(MODES)[values.astype(int) * assisted]
+            continue
+        if not assisted and column.name in GUIDANCE_COLUMNS:
+            values = np.full_like(values, np.nan)
+        columns[column.name] = _as_kind(column, values)
+    return columns
+
+
+def _as_kind(column: Column, values: NDArray[np.float64]) -> NDArray[Any]:
+    """One column in the type that the record keeps it in; NaN becomes a null."""
+    if column.kind == "float64":
+        return values
+    missing = np.isnan(values)
+    whole = np.where(missing, 0.0, values).astype(column.kind)
+    return np.ma.MaskedArray(whole, mask=missing) if column.nullable else whole
+
+
+def _metadata(
+    setup: TrialSetup, parameters: LoopParameters, network_hash: str | None
+) -> dict[str, object]:
+    """The record's description of the trial, spec section 6."""
+    configuration = json.loads(json.dumps(_as_dict(parameters)))
+    configuration["setup"] = _as_dict(setup)
+    text = json.dumps(configuration, sort_keys=True)
+    controller = parameters.controller
+    return {
+        "version": distribution.version("costeer"),
+        "seed": setup.seed,
+        "participant": setup.participant,
+        "condition": setup.condition,
+        "strength_factor": setup.strength_factor,
+        "change_duration": setup.change_duration,
+        "method": setup.method,
+        "car": setup.car,
+        "speed": setup.speed,
+        "driver": f"{setup.driver}, population {POPULATION_VERSION}",
+        "intention_model_hash": network_hash,
+        "inconsistency_threshold": controller.consistency.inconsistency_threshold,
+        "replan_gain": controller.replanning.replan_gain,
+        "torque_limit": controller.actuation.torque_limit,
+        "configuration": configuration,
+        "configuration_hash": hashlib.sha256(text.encode()).hexdigest(),
+        "driver_torque_source": "simulated",
+        "git_revision": git_revision(),
+    }
+
+
+@cache
+def git_revision() -> str | None:
+    """Revision of the sources that run, None outside a checkout."""
+    import subprocess
+    from pathlib import Path
+
+    command = ["git", "rev-parse", "HEAD"]
+    folder = Path(__file__).parents[3]
+    if not (folder / ".git").exists():
+        return None
+    try:
+        answer = subprocess.run(
+            command, cwd=folder, capture_output=True, text=True, check=True
+        )
+    except (OSError, subprocess.CalledProcessError):
+        return None
+    return answer.stdout.strip()
+
+
+def _as_dict(value: Any) -> Any:  # Any: a tree of numbers, names and tuples
+    """Nested named tuples as nested dictionaries; NaN, which JSON has not, as null."""
+    if isinstance(value, tuple) and hasattr(value, "_fields"):
+        return {name: _as_dict(getattr(value, name)) for name in value._fields}
+    if isinstance(value, tuple):
+        return [_as_dict(item) for item in value]
+    if isinstance(value, float) and value != value:
+        return None
+    return value
+
+
+def trial_duration(record: TrialRecord) -> Real:
+    """How long a trial lasted [s]."""
+    return float(len(record.columns["time"]) * DT)

@@ -1,0 +1,150 @@
+"""Single-track car: lateral velocity, yaw rate, position; speed from the pedals."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from costeer.base import array as xp
+from costeer.base.array import Real, compiled
+from costeer.plant.parameters import GRAVITY, CarParameters, wheelbase
+from costeer.plant.tyre import lateral_force
+
+_SLOWEST = 1.0
+"""Slip angles are taken at this speed when the car is slower [m/s]."""
+
+
+class VehicleState(NamedTuple):
+    """Motion of the centre of gravity.
+
+    Attributes:
+        longitudinal_position: Along the road [m].
+        lateral_position: From the left lane's centre, left positive [m].
+        yaw_angle: From the road's direction [rad].
+        longitudinal_velocity: In the car's direction [m/s].
+        lateral_velocity: To the car's left [m/s].
+        yaw_rate: [rad/s].
+        drive: Acceleration that the powertrain and brakes give [m/s²].
+    """
+
+    longitudinal_position: Real
+    lateral_position: Real
+    yaw_angle: Real
+    longitudinal_velocity: Real
+    lateral_velocity: Real
+    yaw_rate: Real
+    drive: Real
+
+
+class VehicleInput(NamedTuple):
+    """What moves the car during one plant step.
+
+    Attributes:
+        car: Its parameters.
+        road_wheel_angle: At the front wheels [rad].
+        drive_command: Acceleration asked for by the pedals [m/s²].
+    """
+
+    car: CarParameters
+    road_wheel_angle: Real
+    drive_command: Real
+
+
+@compiled
+def front_slip_angle(
+    car: CarParameters,
+    longitudinal_velocity: Real,
+    lateral_velocity: Real,
+    yaw_rate: Real,
+    road_wheel_angle: Real,
+) -> Real:
+    """Direction of the front tyre's velocity minus that of the wheel [rad]."""
+    speed = xp.maximum(longitudinal_velocity, _SLOWEST)
+    sideways = lateral_velocity + car.front_distance * yaw_rate
+    return xp.atan(sideways / speed) - road_wheel_angle
+
+
+@compiled
+def rear_slip_angle(
+    car: CarParameters,
+    longitudinal_velocity: Real,
+    lateral_velocity: Real,
+    yaw_rate: Real,
+) -> Real:
+    """Direction of the rear tyre's velocity minus that of the wheel [rad]."""
+    speed = xp.maximum(longitudinal_velocity, _SLOWEST)
+    return xp.atan((lateral_velocity - car.rear_distance * yaw_rate) / speed)
+
+
+@compiled
+def front_lateral_force(state: VehicleState, motion: VehicleInput) -> Real:
+    """Lateral force of the front axle [N]."""
+    car = motion.car
+    slip = front_slip_angle(
+        car,
+        state.longitudinal_velocity,
+        state.lateral_velocity,
+        state.yaw_rate,
+        motion.road_wheel_angle,
+    )
+    load = car.mass * GRAVITY * car.rear_distance / wheelbase(car)
+    return lateral_force(slip, car.front_cornering_stiffness, car.friction * load)
+
+
+@compiled
+def rear_lateral_force(state: VehicleState, motion: VehicleInput) -> Real:
+    """Lateral force of the rear axle [N]."""
+    car = motion.car
+    slip = rear_slip_angle(
+        car, state.longitudinal_velocity, state.lateral_velocity, state.yaw_rate
+    )
+    load = car.mass * GRAVITY * car.front_distance / wheelbase(car)
+    return lateral_force(slip, car.rear_cornering_stiffness, car.friction * load)
+
+
+@compiled
+def resistance(car: CarParameters, speed: Real) -> Real:
+    """Deceleration by rolling and air [m/s²]; none for a car that stands."""
+    air = car.air_resistance * speed * speed
+    return xp.select(speed > 0.0, car.rolling_resistance + air, 0.0)
+
+
+@compiled
+def drive_command(car: CarParameters, accelerator: Real, brake: Real) -> Real:
+    """Acceleration asked for by pedals in [0, 1] [m/s²]."""
+    return car.acceleration_limit * accelerator - car.braking_limit * brake
+
+
+@compiled
+def longitudinal_acceleration(state: VehicleState, motion: VehicleInput) -> Real:
+    """Acceleration of the centre of gravity in the car's direction [m/s²]."""
+    sideways = front_lateral_force(state, motion) * xp.sin(motion.road_wheel_angle)
+    losses = resistance(motion.car, state.longitudinal_velocity)
+    return state.drive - losses - sideways / motion.car.mass
+
+
+@compiled
+def lateral_acceleration(state: VehicleState, motion: VehicleInput) -> Real:
+    """Acceleration of the centre of gravity to the car's left [m/s²]."""
+    front = front_lateral_force(state, motion) * xp.cos(motion.road_wheel_angle)
+    return (front + rear_lateral_force(state, motion)) / motion.car.mass
+
+
+@compiled
+def vehicle_rate(state: VehicleState, motion: VehicleInput) -> VehicleState:
+    """Time derivative of the car's state: planar motion of one rigid body."""
+    car = motion.car
+    front = front_lateral_force(state, motion) * xp.cos(motion.road_wheel_angle)
+    rear = rear_lateral_force(state, motion)
+    moment = car.front_distance * front - car.rear_distance * rear
+    cosine, sine = xp.cos(state.yaw_angle), xp.sin(state.yaw_angle)
+    forward, left = state.longitudinal_velocity, state.lateral_velocity
+    along = longitudinal_acceleration(state, motion) + state.yaw_rate * left
+    return VehicleState(
+        longitudinal_position=forward * cosine - left * sine,
+        lateral_position=forward * sine + left * cosine,
+        yaw_angle=state.yaw_rate,
+        longitudinal_velocity=xp.select((forward > 0.0) | (along > 0.0), along, 0.0),
+        lateral_velocity=(front + rear) / car.mass - state.yaw_rate * forward,
+        yaw_rate=moment / car.yaw_inertia,
+        drive=(motion.drive_command - state.drive) / car.powertrain_lag,
+    )

@@ -1,0 +1,50 @@
+"""What can be known of the world: the record that controller and driver see."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from costeer.base.array import Flag, Real
+
+
+class Measurement(NamedTuple):
+    """One 60 Hz sample of everything that is measured.
+
+    Attributes:
+        longitudinal_position: Along the road [m].
+        lateral_position: From the left lane's centre, left positive [m].
+        yaw_angle: From the road's direction [rad].
+        yaw_rate: [rad/s].
+        longitudinal_velocity: In the car's direction [m/s].
+        longitudinal_acceleration: At the centre of gravity [m/s²].
+        lateral_velocity: At the centre of gravity [m/s].
+        lateral_acceleration: At the centre of gravity [m/s²].
+        steering_wheel_angle: [rad].
+        steering_wheel_rate: [rad/s].
+        front_slip_angle: From the signals above and the car's geometry [rad].
+        driver_torque: Known, measured or estimated, Sec. 1.4 of the specification
+            [N·m].
+        head_yaw: Normalised to [-1, 1], left positive [-].
+        head_yaw_valid: Whether the tracker sees the head.
+        lane: That the car is in, counted from the right [-].
+        side: Of the adjacent lane, -1 right, +1 left [-].
+        distance_to_adjacent_lane: To the line shared with that lane [m].
+    """
+
+    longitudinal_position: Real
+    lateral_position: Real
+    yaw_angle: Real
+    yaw_rate: Real
+    longitudinal_velocity: Real
+    longitudinal_acceleration: Real
+    lateral_velocity: Real
+    lateral_acceleration: Real
+    steering_wheel_angle: Real
+    steering_wheel_rate: Real
+    front_slip_angle: Real
+    driver_torque: Real
+    head_yaw: Real
+    head_yaw_valid: Flag
+    lane: Real
+    side: Real
+    distance_to_adjacent_lane: Real
