@@ -38,8 +38,8 @@ class Motion(NamedTuple):
     position: Signal
     velocity: Signal
     lateral: Signal
-    changes: tuple[tuple[float, float, int], ...]
-    """Start [s], duration [s] and direction of each planned lane change."""
+    changes: tuple[tuple[float, float, int, float], ...]
+    """Start [s], duration [s], direction and trigger [s] of each lane change."""
     event: NDArray[np.int8]
 
 
@@ -98,12 +98,13 @@ def _motion(
     position = np.cumsum(velocity) / RATE
     lateral = smooth_noise(rng, time.size, 0.06, wander)
     event = np.zeros(time.size, np.int8)
-    changes: list[tuple[float, float, int]] = []
+    changes: list[tuple[float, float, int, float]] = []
     for number, place in enumerate((p for p in EVENT_POSITIONS if p < length - 700), 1):
         appears = place / speed
         for start, direction in ((appears + 4.0, -1), (appears + 18.0, 1)):
             duration = planned * float(np.exp(0.12 * rng.normal()))
-            changes.append((start, duration, direction))
+            trigger = start + rng.uniform(0.0, 0.8)
+            changes.append((start, duration, direction, trigger))
             lateral += direction * LANE_WIDTH * quintic((time - start) / duration)
         event[(time >= appears) & (time <= start + duration)] = number
     return Motion(time, position, velocity, lateral, tuple(changes), event)
@@ -157,9 +158,8 @@ def _intention(motion: Motion, rng: np.random.Generator) -> dict[str, np.ndarray
     decision = np.zeros(time.size, np.int8)
     probability = 0.02 + 0.02 * rng.random(time.size)
     head = smooth_noise(rng, time.size, 0.5, 0.03)
-    for start, duration, direction in motion.changes:
+    for start, duration, direction, seen in motion.changes:
         decision[(time >= start - 2.0) & (time <= start + duration)] = direction
-        seen = start + rng.uniform(-0.5, 0.8)
         probability[(time >= seen) & (time <= start + duration / 2)] = 0.9
         head[np.abs(time - start + 1.0) < 0.4] = 0.6 * direction
     probability[:179] = np.nan
@@ -186,8 +186,8 @@ def _guidance(
     gain = _gain(~disputed)
     mode = np.full(num_rows, "lane_keeping", dtype="<U13")
     target = car["lane"].copy()
-    for start, duration, direction in motion.changes:
-        rows = (motion.time >= start) & (motion.time < start + duration)
+    for start, duration, direction, trigger in motion.changes:
+        rows = (motion.time >= trigger) & (motion.time < start + duration)
         mode[rows] = "lane_changing"
         target[rows] = 0 if direction < 0 else 1
     share = strength[0] * gain
@@ -235,7 +235,7 @@ def _no_guidance(num_rows: int) -> dict[str, np.ndarray]:
 def _disputed(motion: Motion) -> NDArray[np.bool_]:
     """Inconsistent for 1.4 s from the crossing of every third lane change."""
     disputed = np.zeros(motion.time.size, bool)
-    for start, duration, _ in motion.changes[::3]:
+    for start, duration, *_ in motion.changes[::3]:
         elapsed = motion.time - start - duration / 2
         disputed |= (elapsed >= 0.0) & (elapsed < 1.4)
     return disputed

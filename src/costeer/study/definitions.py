@@ -1,0 +1,117 @@
+"""What the measures share: their thresholds, their result type, what they need."""
+
+from collections.abc import Mapping
+from math import nan, radians
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+Signal = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+# Any: the element type differs from column to column.
+Columns = Mapping[str, NDArray[Any]]
+
+
+class MeasureParameters(NamedTuple):
+    """Thresholds of the measures of driving; the road's and the car's width.
+
+    Attributes:
+        lane_width: d, of both lanes [m]. Source: the paper's simulator, Sec. III-A.
+        car_width: Over the wheels [m]. Source: assumed, a passenger car's body.
+        yaw_threshold: A lane change starts and ends here [rad]. Source: assumed,
+            0.5 deg, above the yaw of lane keeping and below that of a slow change.
+        lateral_speed_threshold: The same by lateral speed [m/s]. Source: assumed,
+            0.1 m/s, usual in studies of recorded traffic.
+        lane_change_margin: Lane keeping keeps this far from a lane change [s].
+            Source: assumed, the time a car takes to settle.
+        minimum_stay: Who crosses back sooner has not changed lanes [s]. Source:
+            assumed, the prediction horizon of Eq. (2).
+        reversal_angle: Gap of a steering reversal [rad]. Source: the paper, 3 deg.
+        reversal_cutoff: Low-pass before counting [Hz], 0 for none. Source: Markkula
+            and Engström (2006).
+        prediction_horizon: A trigger is true so long before a crossing [s]. Source:
+            the paper, Sec. II-B.
+        early_horizon: From the horizon to here a trigger is early [s]. Source:
+            assumed, glances begin about so long before a crossing.
+        trigger_merge: Triggers closer than this are one [s]. Source: assumed, no
+            driver decides twice in a second.
+        recovery_gain: K_h from which an inconsistency is over [-]. Source: assumed.
+        replan_gain: K_h below which the system re-plans [-]. Source: assumed; a
+            record's own value goes before it.
+        frozen_gain_rate: Slower than this a fade stands still [1/s]. Source:
+            assumed, a fortieth of the fastest change that Eq. (10) makes.
+    """
+
+    lane_width: float = 3.5
+    car_width: float = 1.8
+    yaw_threshold: float = radians(0.5)
+    lateral_speed_threshold: float = 0.1
+    lane_change_margin: float = 3.0
+    minimum_stay: float = 3.0
+    reversal_angle: float = radians(3.0)
+    reversal_cutoff: float = 0.6
+    prediction_horizon: float = 3.0
+    early_horizon: float = 5.0
+    trigger_merge: float = 1.0
+    recovery_gain: float = 0.95
+    replan_gain: float = 0.05
+    frozen_gain_rate: float = 0.05
+
+
+DEFAULTS = MeasureParameters()
+
+
+class Measure(NamedTuple):
+    """A measured value, or why there is none.
+
+    Attributes:
+        value: The value; NaN if it could not be computed.
+        unit: Its unit, "-" if it has none.
+        reason: Why it could not be computed; empty if it could.
+    """
+
+    value: float
+    unit: str
+    reason: str = ""
+
+
+def unknown(unit: str, reason: str) -> Measure:
+    """A measure that could not be computed."""
+    return Measure(value=nan, unit=unit, reason=reason)
+
+
+def missing(columns: Columns, *names: str) -> str:
+    """Which of these columns are absent or undefined throughout; empty if none."""
+    absent = [name for name in names if name not in columns]
+    if absent:
+        return f"needs {_listed(absent)}, not recorded"
+    undefined = [name for name in names if not is_defined(columns[name]).any()]
+    return f"needs {_listed(undefined)}, undefined throughout" if undefined else ""
+
+
+def incomplete(columns: Columns, *names: str) -> str:
+    """Which of these columns are missing or have gaps; empty if none."""
+    gaps = [k for k in names if k in columns and not is_defined(columns[k]).all()]
+    reason = missing(columns, *names)
+    if reason or not gaps:
+        return reason
+    return f"needs {_listed(gaps)} without gaps"
+
+
+def is_defined(values: NDArray[Any]) -> Flags:
+    """Which samples are neither masked nor NaN, shape `(time,)`."""
+    defined = ~np.ma.getmaskarray(values)
+    if values.dtype.kind == "f":
+        defined &= ~np.isnan(np.ma.getdata(values))
+    return np.asarray(defined, dtype=bool)
+
+
+def _listed(names: list[str]) -> str:
+    return f"the column{'s' if len(names) > 1 else ''} {', '.join(names)}"
+
+
+def runs(flags: Flags) -> list[slice]:
+    """The stretches in which a flag holds, as slices of rows, in order."""
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], flags, [False]])))
+    return [slice(int(a), int(b)) for a, b in zip(edges[::2], edges[1::2], strict=True)]

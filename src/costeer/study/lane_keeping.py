@@ -1,0 +1,114 @@
+"""How well the lane is kept: position, time to the line, departures."""
+
+import numpy as np
+
+from costeer.study.crossings import excursion, within
+from costeer.study.definitions import (
+    DEFAULTS,
+    Columns,
+    Measure,
+    MeasureParameters,
+    Signal,
+    runs,
+    unknown,
+)
+from costeer.study.segments import Segments
+
+_NO_KEEPING = "the record has no lane keeping outside lane changes and events"
+
+
+def gathered(values: Signal, stretches: tuple[slice, ...]) -> Signal:
+    """The samples of several stretches, one after the other, shape `(time,)`."""
+    return np.concatenate([values[rows] for rows in stretches] or [values[:0]])
+
+
+def sdlp(columns: Columns, segments: Segments) -> Measure:
+    """Standard deviation of the lane position [m], Eq. (12), Sec. III-F.
+
+    All lane keeping of the trial together, about its one mean, with n - 1.
+    """
+    position = gathered(columns["lateral_position"], segments.lane_keeping)
+    if position.size < 2:
+        return unknown("m", _NO_KEEPING)
+    return Measure(value=float(np.std(position, ddof=1)), unit="m")
+
+
+def lateral_speed(columns: Columns) -> Signal:
+    """Rate of the lateral position [m/s], left positive, shape `(time,)`."""
+    return np.asarray(np.gradient(columns["lateral_position"], columns["time"]))
+
+
+def time_to_line_crossing(
+    position: Signal, speed: Signal, parameters: MeasureParameters = DEFAULTS
+) -> Signal:
+    """Time until a wheel reaches the line if the lateral speed stays [s].
+
+    The gap between the side of the car it moves to and the line of the left lane on
+    that side, over the lateral speed; 0 with the wheel over the line, infinite
+    without lateral speed.
+
+    Args:
+        position: From the centre of the lane [m], left positive, shape `(time,)`.
+        speed: Lateral speed [m/s], left positive, shape `(time,)`.
+        parameters: Width of the lane and the car.
+
+    Returns:
+        Shape `(time,)`.
+    """
+    room = (parameters.lane_width - parameters.car_width) / 2.0
+    gap = room - np.sign(speed) * position
+    with np.errstate(divide="ignore"):
+        return np.asarray(np.maximum(gap, 0.0) / np.abs(speed))
+
+
+def times_to_line_crossing(
+    columns: Columns,
+    speed: Signal,
+    segments: Segments,
+    parameters: MeasureParameters = DEFAULTS,
+) -> tuple[Measure, Measure]:
+    """Least and median time to line crossing in lane keeping [s]."""
+    position = gathered(columns["lateral_position"], segments.lane_keeping)
+    moving = gathered(speed, segments.lane_keeping)
+    kept = time_to_line_crossing(position, moving, parameters)
+    if kept.size == 0:
+        return unknown("s", _NO_KEEPING), unknown("s", _NO_KEEPING)
+    least, median = float(kept.min()), float(np.median(kept))
+    return Measure(value=least, unit="s"), Measure(value=median, unit="s")
+
+
+def lane_departures(
+    columns: Columns,
+    speed: Signal,
+    segments: Segments,
+    parameters: MeasureParameters = DEFAULTS,
+) -> tuple[slice, ...]:
+    """Stretches with a wheel over any line outside a completed lane change.
+
+    A lane change lasts here from the first to the last of its yaw and its lateral
+    speed, so that a slow approach to the new lane's centre is no departure. Crossing
+    the line and back is one.
+    """
+    over = _off_centre(columns, parameters) > (
+        (parameters.lane_width - parameters.car_width) / 2.0
+    )
+    for change in segments.changes:
+        start, end = change.start_time, change.end_time
+        span = excursion(
+            columns["time"],
+            speed * change.direction,
+            parameters.lateral_speed_threshold,
+            change.crossing_time,
+        )
+        if span is not None:
+            start, end = min(start, span[0]), max(end, span[1])
+        over[within(columns["time"], start, end)] = False
+    return tuple(runs(over))
+
+
+def _off_centre(columns: Columns, parameters: MeasureParameters) -> Signal:
+    """Distance from the centre of the nearer lane [m], shape `(time,)`."""
+    position = columns["lateral_position"]
+    return np.asarray(
+        np.minimum(np.abs(position), np.abs(position + parameters.lane_width))
+    )

@@ -1,0 +1,166 @@
+"""The rows of `trials.csv` and `lane_changes.csv`: measures of a record in SI units.
+
+What a measure is stands in the files beside this one and in docs/measures.md. What
+could not be computed is NaN here; `trial_measures` says why.
+"""
+
+from math import isclose, nan
+
+from costeer.loop.columns import TrialRecord
+from costeer.study.definitions import DEFAULTS, MeasureParameters, incomplete
+from costeer.study.detection import Detection, detect, lead_time
+from costeer.study.inconsistencies import Inconsistency, find_inconsistencies
+from costeer.study.manoeuvres import (
+    duration_sensitivity,
+    is_assisted,
+    overshoot,
+    peak_steering_angle,
+    speed_measures,
+    steering_velocity_rms,
+)
+from costeer.study.segments import LaneChange, Segments
+from costeer.study.trial_measures import Trial, prepare, trial_measures
+
+Row = dict[str, object]
+
+_STRENGTHS = {0.0: "manual", 1.0: "strong", 0.4: "weak"}
+
+
+def trial_row(
+    record: TrialRecord,
+    order: int | None = None,
+    parameters: MeasureParameters = DEFAULTS,
+) -> Row:
+    """The row of a trial in `trials.csv`.
+
+    Args:
+        record: The trial.
+        order: Its place in the participant's session, from 1.
+        parameters: Thresholds of the measures.
+
+    Returns:
+        Column names and values; the same names for every record.
+    """
+    trial = prepare(record.columns, parameters_of(record, parameters))
+    measures = trial_measures(trial)
+    return {
+        **_identity(record),
+        "order": order,
+        **{name: measure.value for name, measure in measures.items()},
+        "dropped_changes": _dropped(trial),
+    }
+
+
+def lane_change_rows(
+    record: TrialRecord, parameters: MeasureParameters = DEFAULTS
+) -> list[Row]:
+    """The rows of a trial in `lane_changes.csv`, in order of time.
+
+    Args:
+        record: The trial.
+        parameters: Thresholds of the measures.
+
+    Returns:
+        Per completed lane change, column names and values.
+    """
+    trial = prepare(record.columns, parameters_of(record, parameters))
+    if isinstance(trial.segments, str):
+        return []
+    found = detect(trial.columns, trial.parameters)
+    disputes = find_inconsistencies(trial.columns, trial.parameters)
+    return [
+        {
+            **_identity(record),
+            **_change_row(trial, change),
+            **_judged(change, found, disputes),
+        }
+        for change in trial.segments.changes
+    ]
+
+
+def parameters_of(
+    record: TrialRecord, parameters: MeasureParameters = DEFAULTS
+) -> MeasureParameters:
+    """The parameters with the record's own re-plan gain, if it says one."""
+    replan_gain = record.metadata.get("replan_gain")
+    if not isinstance(replan_gain, (int, float)):
+        return parameters
+    return MeasureParameters(
+        **{**parameters._asdict(), "replan_gain": float(replan_gain)}
+    )
+
+
+def strength(factor: object) -> str:
+    """Name of a strength factor: manual, strong or weak; else the factor itself."""
+    if not isinstance(factor, (int, float)):
+        return "manual"
+    for known, name in _STRENGTHS.items():
+        if isclose(factor, known, abs_tol=1e-9):
+            return name
+    return f"{factor:g}"
+
+
+def _identity(record: TrialRecord) -> Row:
+    metadata = record.metadata
+    name = strength(metadata.get("strength_factor"))
+    duration = metadata.get("change_duration")
+    known = isinstance(duration, (int, float)) and name != "manual"
+    return {
+        "participant": metadata.get("participant"),
+        "condition": metadata.get("condition"),
+        "strength": name,
+        "change_duration": duration if known else nan,
+    }
+
+
+def _dropped(trial: Trial) -> str:
+    """The crossings that make no lane change, as one text; empty if none."""
+    if not isinstance(trial.segments, Segments):
+        return ""
+    return "; ".join(
+        f"{dropped.crossing_time:.2f} s: {dropped.reason}"
+        for dropped in trial.segments.dropped
+    )
+
+
+def _change_row(trial: Trial, change: LaneChange) -> Row:
+    columns, parameters = trial.columns, trial.parameters
+    return {
+        "index": change.number,
+        "direction": change.direction,
+        "start_time": change.start_time,
+        "crossing_time": change.crossing_time,
+        "end_time": change.end_time,
+        "duration": change.end_time - change.start_time,
+        "overshoot": overshoot(columns, change, parameters),
+        **_steering_row(trial, change),
+        "assisted": is_assisted(columns, change),
+        **speed_measures(columns, trial.speed, change, parameters),
+        **duration_sensitivity(columns, change),
+    }
+
+
+def _steering_row(trial: Trial, change: LaneChange) -> Row:
+    if incomplete(trial.columns, "steering_wheel_angle"):
+        return {"steering_velocity_rms": nan, "peak_steering_angle": nan}
+    return {
+        "steering_velocity_rms": steering_velocity_rms(trial.columns, change),
+        "peak_steering_angle": peak_steering_angle(trial.columns, change),
+    }
+
+
+def _judged(
+    change: LaneChange,
+    found: Detection | str,
+    disputes: tuple[Inconsistency, ...] | str,
+) -> Row:
+    """Lead time of the detection and inconsistencies that began in the lane change."""
+    lead, number = nan, nan
+    if isinstance(found, Detection):
+        lead = lead_time(found, change.crossing_time)
+    if not isinstance(disputes, str):
+        number = sum(
+            change.start_time <= dispute.start_time <= change.end_time
+            for dispute in disputes
+        )
+    return {"detection_lead_time": lead, "num_inconsistencies": number}
