@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import shutil
+import tempfile
 from importlib.metadata import PackageNotFoundError
 from pathlib import Path
 from typing import NamedTuple
@@ -89,3 +90,42 @@ def test_unwritable_code_cache_is_told(
 def test_old_python_is_missing(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(doctor, "OLDEST_PYTHON", (99, 0))
     assert doctor.check_python().status == "missing"
+
+
+def fails(*_: object, **__: object) -> None:
+    """Stand in for something that is broken here."""
+    raise OSError("broken")
+
+
+def test_an_engine_that_does_not_compile_is_missing(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr("numba.njit", fails)
+    finding = doctor.check_numba()
+    assert (finding.status, finding.detail) == ("missing", "broken")
+    assert "pip install" in finding.remedy
+
+
+def test_figures_that_cannot_be_drawn_are_missing(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr("matplotlib.figure.Figure.savefig", fails)
+    finding = doctor.check_figures()
+    assert (finding.status, finding.detail) == ("missing", "broken")
+
+
+def test_a_code_cache_that_a_restart_empties_is_told(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    with tempfile.TemporaryDirectory() as folder:
+        monkeypatch.setattr("costeer.base.entry.cache_folder", lambda: Path(folder))
+        assert doctor.check_cache().detail.endswith("lost at restart")
+
+
+def test_systems_that_tell_neither_memory_nor_cores_are_no_error(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.delattr("os.sched_getaffinity", raising=False)
+    monkeypatch.delattr("os.sysconf_names", raising=False)
+    assert doctor.usable_cores() >= 1
+    assert doctor.total_memory() is None

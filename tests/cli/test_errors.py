@@ -37,7 +37,13 @@ def test_exit_code_of_a_command_is_handed_on() -> None:
             ValueError("speed 0 m/s is too low;\n give 5 to 60"),
             "speed 0 m/s is too low",
         ),
-        (FileNotFoundError(errno.ENOENT, "x", "a.parquet"), "a.parquet: No such file"),
+        (
+            FileNotFoundError(errno.ENOENT, "no", "a.parquet"),
+            "a.parquet: no; check the",
+        ),
+        (FileNotFoundError("a.parquet"), "a.parquet: No such file or directory; check"),
+        (FileNotFoundError("no records; give a folder"), "no records; give a folder\n"),
+        (OSError(errno.EIO, "Error writing bytes"), "costeer: Error writing bytes\n"),
         (OSError("not a Parquet file"), "not a Parquet file"),
         (
             OSError(errno.ENOSPC, "x", "out/a"),
@@ -110,5 +116,5 @@ def test_unknown_option_is_refused(capsys: pytest.CaptureFixture[str]) -> None:
 def test_system_error_says_what_the_system_says(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
-    exit_code_of(raising(OSError(errno.EMFILE, "x")))
+    exit_code_of(raising(OSError(errno.EMFILE, "")))
     assert capsys.readouterr().err == f"costeer: {os.strerror(errno.EMFILE)}\n"

@@ -72,13 +72,22 @@ def _missing_module(name: str) -> str:
 
 def _system_error(error: OSError) -> str:
     """Name what could not be done, the file and the way out."""
-    if error.errno is None:
-        return str(error)
-    reason = os.strerror(error.errno)
-    place = f"{error.filename}: " if error.filename else ""
-    remedy = _REMEDIES.get(error.errno, "")
-    return f"{place}{reason}{remedy}"
+    number = error.errno or _NUMBERS.get(type(error))
+    told = str(error)
+    if number is None or (error.errno is None and "; " in told):
+        return told
+    reason = error.strerror or os.strerror(number)
+    place = error.filename or ("" if error.errno else told)
+    return f"{place}: {reason}{_REMEDIES.get(number, '')}".removeprefix(": ")
 
+
+_NUMBERS: dict[type[OSError], int] = {
+    FileNotFoundError: errno.ENOENT,
+    PermissionError: errno.EACCES,
+    IsADirectoryError: errno.EISDIR,
+    NotADirectoryError: errno.ENOTDIR,
+}
+"""What an error without a number means: some libraries give the path alone."""
 
 _REMEDIES = {
     errno.ENOSPC: "; free some space and run the same command again",
