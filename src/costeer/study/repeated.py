@@ -1,0 +1,57 @@
+"""Repeated-measures analysis of variance of participants' cell means."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from costeer.study.anova import ONE_LEVEL, FTest, no_f_test, vanishes
+from costeer.study.contrasts import Effect
+
+
+def repeated_f_test(means: NDArray[np.float64], effect: Effect) -> FTest:
+    """F test of an effect against its own interaction with participants.
+
+    Each participant is reduced to the effect's orthonormal contrasts; the test asks
+    whether their mean over participants is zero.
+
+    Args:
+        means: One per participant and cell, shape (participants, cells), no gap.
+        effect: Effect over these cells.
+
+    Returns:
+        The test, with the Greenhouse-Geisser factor as `epsilon`.
+    """
+    num_participants, df1 = means.shape[0], effect.contrasts.shape[1]
+    if df1 == 0:
+        return no_f_test(ONE_LEVEL)
+    if num_participants < 2:
+        return no_f_test(f"{num_participants} participant(s) with every cell, 2 needed")
+    contrasts = means @ effect.contrasts
+    mean = contrasts.mean(axis=0)
+    deviations = contrasts - mean
+    if vanishes(deviations, means):
+        return no_f_test("no variance of the effect between participants")
+    df2 = df1 * (num_participants - 1)
+    error = float(np.sum(deviations**2)) / df2
+    explained = num_participants * float(mean @ mean) / df1
+    return FTest(
+        statistic=explained / error,
+        df1=float(df1),
+        df2=float(df2),
+        epsilon=greenhouse_geisser(deviations),
+    )
+
+
+def greenhouse_geisser(deviations: NDArray[np.float64]) -> float:
+    """Factor on the degrees of freedom, from 1 / contrasts to 1 under sphericity.
+
+    Args:
+        deviations: Contrasts minus their means, shape (participants, contrasts).
+
+    Source: Greenhouse and Geisser (1959), Psychometrika 24, 95 to 112.
+    """
+    covariance = deviations.T @ deviations
+    num_contrasts = covariance.shape[0]
+    epsilon = np.trace(covariance) ** 2 / (num_contrasts * np.sum(covariance**2))
+    return float(np.clip(epsilon, 1.0 / num_contrasts, 1.0))

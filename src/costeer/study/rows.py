@@ -1,0 +1,120 @@
+"""How a test becomes a row: p values, effect size, correction and mark added."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import NamedTuple
+
+from costeer.study.anova import FTest
+from costeer.study.effects import EffectSize, partial_eta_squared
+from costeer.study.outcome import EffectRow, PairRow
+from costeer.study.ttests import TTest, benjamini_hochberg, significance_mark
+
+
+class Comparison(NamedTuple):
+    """A pair of levels and the test between them.
+
+    Attributes:
+        first: A condition or strength.
+        second: The one it is compared with.
+        test: Outcome.
+        n_first: Number of values or participants of the first.
+        n_second: The same of the second.
+        note: Who was left out.
+    """
+
+    first: str
+    second: str
+    test: TTest
+    n_first: int
+    n_second: int
+    note: str = ""
+
+
+class About(NamedTuple):
+    """What a test is about.
+
+    Attributes:
+        measure: Name of the measure.
+        analysis: `published`, `within` or `mixed`.
+        n: Number of values or participants.
+        note: Design, and who was left out.
+    """
+
+    measure: str
+    analysis: str
+    n: int
+    note: str
+
+
+def effect_row(about: About, effect: str, test: FTest) -> EffectRow:
+    """Return the row of an F test."""
+    from scipy import stats
+
+    df1, df2 = test.epsilon * test.df1, test.epsilon * test.df2
+    p_corrected = float(stats.f.sf(test.statistic, df1, df2))
+    known = math.isfinite(test.statistic)
+    size = partial_eta_squared(test.statistic, df1, df2) if known else EffectSize()
+    return EffectRow(
+        measure=about.measure,
+        analysis=about.analysis,
+        effect=effect,
+        statistic=test.statistic,
+        df1=test.df1,
+        df2=test.df2,
+        epsilon=test.epsilon,
+        p=float(stats.f.sf(test.statistic, test.df1, test.df2)),
+        p_corrected=p_corrected,
+        mark=significance_mark(p_corrected),
+        effect_size=size.value,
+        effect_size_low=size.low,
+        effect_size_high=size.high,
+        effect_size_kind=size.kind,
+        n=about.n,
+        note=joined(test.note, about.note),
+    )
+
+
+def pair_rows(
+    measure: str, analysis: str, comparisons: Sequence[Comparison]
+) -> tuple[PairRow, ...]:
+    """Return the rows of a family of pairs, corrected over the family."""
+    corrected = benjamini_hochberg([each.test.p for each in comparisons])
+    return tuple(
+        _pair_row((measure, analysis), comparison, p_corrected)
+        for comparison, p_corrected in zip(comparisons, corrected, strict=True)
+    )
+
+
+def _pair_row(
+    names: tuple[str, str], comparison: Comparison, p_corrected: float
+) -> PairRow:
+    test = comparison.test
+    return PairRow(
+        *names,
+        first=comparison.first,
+        second=comparison.second,
+        mean_first=test.mean_first,
+        mean_second=test.mean_second,
+        mean_difference=test.mean_first - test.mean_second,
+        low=test.low,
+        high=test.high,
+        statistic=test.statistic,
+        df=test.df,
+        p=test.p,
+        p_corrected=p_corrected,
+        mark=significance_mark(p_corrected),
+        effect_size=test.effect_size.value,
+        effect_size_low=test.effect_size.low,
+        effect_size_high=test.effect_size.high,
+        effect_size_kind=test.effect_size.kind,
+        n_first=comparison.n_first,
+        n_second=comparison.n_second,
+        note=joined(test.note, comparison.note),
+    )
+
+
+def joined(*notes: str) -> str:
+    """Return the notes that say something, as one."""
+    return "; ".join(note for note in notes if note)
