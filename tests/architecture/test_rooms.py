@@ -14,8 +14,8 @@ RIM = {"cli", "bench", "doctor", "runtime", "web", "__main__"}
 CLOCKS = {"time", "datetime", "random", "secrets"}
 """Modules whose answers differ from run to run."""
 
-SIMULATING = {"run", "jobs", "trials"}
-"""Modules of the experiment that simulate trials; all others read records only."""
+SIMULATING = {"configuration", "run", "jobs", "trials"}
+"""Modules of the experiment that set up and run trials; others read records only."""
 
 RECORDS = {"record", "columns", "arrow"}
 """Modules of the loop that hold the record."""
