@@ -243,5 +243,5 @@ def _add_scaled(state: Any, rate: Any, step: Any) -> Any:
     terms = ", ".join(f"state.{f} + step * rate.{f}" for f in state.fields)
     source = f"def implementation(state, rate, step):\n    return Tuple({terms})\n"
     names: dict[str, Any] = {"Tuple": state.instance_class}
-    exec(source, names)  # noqa: S102  no other way to write out a tuple's fields
+    exec(source, names)  # no other way to write out the fields of a tuple
     return names["implementation"]

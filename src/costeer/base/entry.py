@@ -2,7 +2,8 @@
 
 Numba's own cache looks only at the file of the entry function, so that an edit to an
 equation it calls would go unseen. Here the cache folder bears a hash of all of
-costeer's sources: any edit makes a new folder (tests/base/test_entry.py).
+the sources that compiled code is made of: any edit there makes a new folder
+(tests/base/test_entry.py).
 """
 
 from __future__ import annotations
@@ -21,11 +22,24 @@ import numba
 Function = TypeVar("Function", bound=Callable[..., Any])
 _KEPT_FOLDERS = 3
 
+COMPILED_ROOMS = (
+    "base",
+    "plant",
+    "sensing",
+    "intention",
+    "controller",
+    "methods",
+    "drivers",
+    "loop",
+)
+"""Rooms whose functions end up in machine code."""
+
 
 def source_hash(package: Path) -> str:
-    """Return a hash of every Python file below `package`, in path order."""
+    """Return a hash of every Python file of the compiled rooms, in path order."""
     digest = hashlib.sha256()
-    for file in sorted(package.rglob("*.py")):
+    files = [file for room in COMPILED_ROOMS for file in (package / room).rglob("*.py")]
+    for file in sorted(files):
         digest.update(str(file.relative_to(package)).encode())
         digest.update(file.read_bytes())
     return digest.hexdigest()[:16]

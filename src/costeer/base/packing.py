@@ -126,5 +126,5 @@ def _constructor(kind: Any, names: dict[str, Any], i: int) -> tuple[str, int]:
 
 def _written(source: str, names: dict[str, Any]) -> Any:
     """Return the function `implementation` that `source` defines."""
-    exec(source, names)  # noqa: S102  no other way to write out a tuple's fields
+    exec(source, names)  # no other way to write out the fields of a tuple
     return names["implementation"]

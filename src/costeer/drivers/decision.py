@@ -51,7 +51,7 @@ class DecisionParameters(NamedTuple):
     decides: Real = 1.0
     headway: Real = 2.3
     return_distance: Real = 28.0
-    change_duration: Real = 6.7
+    change_duration: Real = 6.9
     change_duration_spread: Real = 0.17
     preparation_time: Real = 2.0
     return_preparation_time: Real = 0.7

@@ -20,7 +20,11 @@ from costeer.sensing.measurement import Measurement
 
 
 class LongitudinalParameters(NamedTuple):
-    """Intelligent driver model (Treiber, Hennecke, Helbing 2000) with a mood.
+    """Intelligent driver model with a preferred speed that wanders.
+
+    Treiber, Hennecke and Helbing (2000) in the form of Schakel, van Arem and Netten
+    (2010): the smaller of free and following acceleration, so that a driver comes up
+    to the wanted gap behind a slower leader.
 
     Attributes:
         preferred_speed: On a free road [m/s]. Source: paper, about 70 km/h.
@@ -44,7 +48,7 @@ class LongitudinalParameters(NamedTuple):
     overtaking_speed: Real = 2.0
     acceleration: Real = 1.2
     deceleration: Real = 1.8
-    headway: Real = 1.3
+    headway: Real = 1.0
     overtaking_headway: Real = 0.5
     standstill_gap: Real = 6.5
     pedal_time: Real = 0.4
@@ -97,7 +101,7 @@ def interaction(
     leader: LeaderState,
     phase: Real,
 ) -> Real:
-    """Share of the comfortable acceleration that the leader takes away [-].
+    """Square of wanted over present gap: 1 where the gap is as wanted [-].
 
     Args:
         parameters: Of the intelligent driver model.
@@ -142,8 +146,8 @@ def step(
     aim = wanted_speed(parameters, state, decision.phase)
     ratio = measurement.longitudinal_velocity / xp.maximum(aim, 1.0)
     free = 1.0 - ratio * ratio * ratio * ratio
-    taken = interaction(parameters, measurement, leader, decision.phase)
-    wanted = parameters.acceleration * (free - taken)
+    following = 1.0 - interaction(parameters, measurement, leader, decision.phase)
+    wanted = parameters.acceleration * xp.minimum(free, following)
     wanted = xp.maximum(wanted, -3.0 * parameters.deceleration)
     return LongitudinalState(
         speed_wander=coloured_noise(

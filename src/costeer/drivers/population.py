@@ -53,7 +53,7 @@ class PopulationParameters(NamedTuple):
         glance_spread: Of glance amplitude [-]. Source: assumed.
     """
 
-    wander_deviation_spread: Real = 0.17
+    wander_deviation_spread: Real = 0.18
     lane_bias_spread: Real = 0.05
     near_noise_spread: Real = 0.2
     lead_time_spread: Real = 0.3

@@ -49,8 +49,8 @@ class VisionParameters(NamedTuple):
     near_time: Real = 0.4
     anticipation_time: Real = 0.35
     curvature_gain: Real = 0.9
-    near_noise: Real = 0.010
-    motor_noise: Real = 0.012
+    near_noise: Real = 0.009
+    motor_noise: Real = 0.011
     noise_time: Real = 0.35
 
 
