@@ -51,10 +51,13 @@ class Script(NamedTuple):
 
     Attributes:
         intention: `INTENTION_OFF`, `INTENTION_SCRIPTED` or `INTENTION_NETWORK`.
+        horizon: A scripted verdict is positive when the driver's own plan crosses the
+            line within this time [s].
         trigger_times: When a lane change is requested, shape `(request,)` [s].
     """
 
     intention: int
+    horizon: Real
     trigger_times: NDArray[np.float64]
 
 
@@ -73,10 +76,10 @@ def intention_sample(measurement: Measurement) -> IntentionSample:
 
 
 @compiled
-def scripted_probability(state: LoopState) -> Real:
-    """1 while the driver's own plan crosses the line within 3 s, else 0 [-]."""
+def scripted_probability(state: LoopState, horizon: Real) -> Real:
+    """1 while the driver's own plan crosses the line within `horizon` [s], else 0."""
     remaining = time_to_crossing(state.driver.decision)
-    return xp.select(planned_to_cross(remaining, PREDICTION_HORIZON), 1.0, 0.0)
+    return xp.select(planned_to_cross(remaining, horizon), 1.0, 0.0)
 
 
 @compiled
@@ -103,7 +106,7 @@ def tick(
     measurement = sense(parameters, state, noise)
     probability = math.nan
     if script.intention == INTENTION_SCRIPTED:
-        probability = scripted_probability(state)
+        probability = scripted_probability(state, script.horizon)
     if script.intention == INTENTION_NETWORK:
         probability = advance(weights, memory, intention_sample(measurement))
     asked = requested(script.trigger_times, state.time)

@@ -17,6 +17,7 @@ from costeer.loop.rollout import (
     INTENTION_NETWORK,
     INTENTION_OFF,
     INTENTION_SCRIPTED,
+    PREDICTION_HORIZON,
 )
 from costeer.loop.step import LoopParameters, StartParameters
 from costeer.methods.registry import method_named
@@ -65,6 +66,7 @@ class TrialSetup(NamedTuple):
         hold_time: Of the verdict of Table III [s].
         look_ahead: Take the path at the preview point, the other reading of Fig. 4.
         inconsistency_threshold: δ [W].
+        prediction_horizon: Of the scripted intention, g of Eq. (2) [s].
     """
 
     participant: int = 1
@@ -85,6 +87,7 @@ class TrialSetup(NamedTuple):
     hold_time: Real = 0.0
     look_ahead: bool = False
     inconsistency_threshold: Real = ConsistencyParameters().inconsistency_threshold
+    prediction_horizon: Real = PREDICTION_HORIZON
 
 
 class _Range(NamedTuple):
@@ -102,6 +105,7 @@ _RANGES = {
     "initial_offset": _Range(-1.5, 1.5, "m"),
     "hold_time": _Range(0.0, 10.0, "s"),
     "inconsistency_threshold": _Range(0.0, 100.0, "W"),
+    "prediction_horizon": _Range(0.1, 10.0, "s"),
     "participant": _Range(0, 10_000_000, "-"),
     "seed": _Range(0, 2**63 - 1, "-"),
     "plant_steps": _Range(4, 64, "-"),

@@ -119,6 +119,7 @@ def simulate_trial(
     )
     script = Script(
         intention=INTENTIONS[setup.intention],
+        horizon=setup.prediction_horizon,
         trigger_times=np.array(sorted(setup.trigger_times), dtype=np.float64),
     )
     rows = rollout(parameters, script, packed, network_memory(packed), noise, engine)

@@ -115,36 +115,41 @@ def drive_command(car: CarParameters, accelerator: Real, brake: Real) -> Real:
 
 
 @compiled
-def longitudinal_acceleration(state: VehicleState, motion: VehicleInput) -> Real:
-    """Acceleration of the centre of gravity in the car's direction [m/s²]."""
-    sideways = front_lateral_force(state, motion) * xp.sin(motion.road_wheel_angle)
+def accelerations(
+    state: VehicleState, motion: VehicleInput, front: Real, rear: Real
+) -> tuple[Real, Real]:
+    """Acceleration of the centre of gravity, forward and to the left [m/s²].
+
+    Args:
+        state: Of the car.
+        motion: What moves it.
+        front: Lateral force of the front axle [N].
+        rear: Lateral force of the rear axle [N].
+    """
+    angle, mass = motion.road_wheel_angle, motion.car.mass
     losses = resistance(motion.car, state.longitudinal_velocity)
-    return state.drive - losses - sideways / motion.car.mass
-
-
-@compiled
-def lateral_acceleration(state: VehicleState, motion: VehicleInput) -> Real:
-    """Acceleration of the centre of gravity to the car's left [m/s²]."""
-    front = front_lateral_force(state, motion) * xp.cos(motion.road_wheel_angle)
-    return (front + rear_lateral_force(state, motion)) / motion.car.mass
+    forward = state.drive - losses - front * xp.sin(angle) / mass
+    return forward, (front * xp.cos(angle) + rear) / mass
 
 
 @compiled
 def vehicle_rate(state: VehicleState, motion: VehicleInput) -> VehicleState:
     """Time derivative of the car's state: planar motion of one rigid body."""
     car = motion.car
-    front = front_lateral_force(state, motion) * xp.cos(motion.road_wheel_angle)
+    front = front_lateral_force(state, motion)
     rear = rear_lateral_force(state, motion)
-    moment = car.front_distance * front - car.rear_distance * rear
+    push, pull = accelerations(state, motion, front, rear)
+    across = front * xp.cos(motion.road_wheel_angle)
+    moment = car.front_distance * across - car.rear_distance * rear
     cosine, sine = xp.cos(state.yaw_angle), xp.sin(state.yaw_angle)
     forward, left = state.longitudinal_velocity, state.lateral_velocity
-    along = longitudinal_acceleration(state, motion) + state.yaw_rate * left
+    along = push + state.yaw_rate * left
     return VehicleState(
         longitudinal_position=forward * cosine - left * sine,
         lateral_position=forward * sine + left * cosine,
         yaw_angle=state.yaw_rate,
         longitudinal_velocity=xp.select((forward > 0.0) | (along > 0.0), along, 0.0),
-        lateral_velocity=(front + rear) / car.mass - state.yaw_rate * forward,
+        lateral_velocity=pull - state.yaw_rate * forward,
         yaw_rate=moment / car.yaw_inertia,
         drive=(motion.drive_command - state.drive) / car.powertrain_lag,
     )

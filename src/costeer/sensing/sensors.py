@@ -15,9 +15,10 @@ from costeer.plant.parameters import CarParameters, RoadParameters
 from costeer.plant.road import adjacent_side, distance_to_adjacent_lane, lane_at
 from costeer.plant.vehicle import (
     VehicleInput,
+    accelerations,
+    front_lateral_force,
     front_slip_angle,
-    lateral_acceleration,
-    longitudinal_acceleration,
+    rear_lateral_force,
 )
 from costeer.plant.world import WorldState
 from costeer.sensing.measurement import Measurement
@@ -69,6 +70,12 @@ def measure(
     vehicle, wheel = world.vehicle, world.column
     road_wheel_angle = wheel.steering_wheel_angle / car.steering_ratio
     motion = VehicleInput(car=car, road_wheel_angle=road_wheel_angle, drive_command=0.0)
+    forward, left = accelerations(
+        vehicle,
+        motion,
+        front_lateral_force(vehicle, motion),
+        rear_lateral_force(vehicle, motion),
+    )
     lane = lane_at(road, vehicle.lateral_position)
     side = adjacent_side(road, lane)
     return Measurement(
@@ -77,9 +84,9 @@ def measure(
         yaw_angle=vehicle.yaw_angle,
         yaw_rate=vehicle.yaw_rate,
         longitudinal_velocity=vehicle.longitudinal_velocity,
-        longitudinal_acceleration=longitudinal_acceleration(vehicle, motion),
+        longitudinal_acceleration=forward,
         lateral_velocity=vehicle.lateral_velocity,
-        lateral_acceleration=lateral_acceleration(vehicle, motion),
+        lateral_acceleration=left,
         steering_wheel_angle=wheel.steering_wheel_angle,
         steering_wheel_rate=wheel.steering_wheel_rate,
         front_slip_angle=front_slip_angle(

@@ -43,9 +43,7 @@ def touching_time(record: TrialRecord, crossing_time: Real, direction: int) -> R
     return float(time[clear[-1]]) if clear.size else float(time[0])
 
 
-def glance_before_change(
-    record: TrialRecord, change: dict[str, Any]
-) -> float:
+def glance_before_change(record: TrialRecord, change: dict[str, Any]) -> float:
     """1 if the driver looked to that side in the 6 s before the wheel touched, else 0.
 
     Args:

@@ -1,0 +1,95 @@
+"""Pilot drivers: the inconsistency threshold δ from runs in which nobody disagrees.
+
+Pilot drivers have seeds of their own and are no participants of any study. Only the
+gap of the two pseudo-works is looked at, no measure of the study.
+"""
+
+from __future__ import annotations
+
+from concurrent.futures import ThreadPoolExecutor
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from costeer.base.array import Real
+from costeer.controller.actuation import STRONG, WEAK
+from costeer.loop.scenario import TrialSetup, trial_driver
+from costeer.loop.trial import simulate_trial
+
+PILOT_SEED = 900_001
+"""Seed of the pilot drivers; studies refuse it."""
+
+NEVER = 100.0
+"""A threshold that no run reaches, so that the gain stays full [W]."""
+
+PERCENTILE = 99.9
+FACTOR = 2.0
+"""δ is this many times that percentile of the gap in agreeing runs."""
+
+
+class PilotResult(NamedTuple):
+    """What the pilot runs gave.
+
+    Attributes:
+        num_drivers: Pilot drivers.
+        num_samples: Samples with opposed torques, S_c < 0.
+        percentile: 99.9th percentile of the gap among them [W].
+        threshold: δ, twice that [W].
+    """
+
+    num_drivers: int
+    num_samples: int
+    percentile: Real
+    threshold: Real
+
+
+def agreeing_setups(participant: int) -> list[TrialSetup]:
+    """Trials of one pilot driver in which driver and system want the same.
+
+    Lane keeping without leaders, and lane changes whose path has the driver's own
+    duration and starts with the driver's own plan, strong and weak.
+    """
+    setups = []
+    for strength in (STRONG, WEAK):
+        keeping = TrialSetup(
+            participant=participant,
+            seed=PILOT_SEED,
+            condition=f"pilot-keeping-{strength}",
+            strength_factor=strength,
+            intention="off",
+            events=False,
+            inconsistency_threshold=NEVER,
+        )
+        duration = trial_driver(keeping).decision.change_duration
+        changing = keeping._replace(
+            condition=f"pilot-changing-{strength}",
+            change_duration=duration,
+            intention="scripted",
+            prediction_horizon=duration / 2.0,
+            events=True,
+        )
+        setups += [keeping, changing]
+    return setups
+
+
+def opposed_gaps(setup: TrialSetup) -> NDArray[np.float64]:
+    """|W_hapi - W_dr| of a run where the torques oppose, shape `(sample,)` [W]."""
+    columns = simulate_trial(setup).columns
+    gap = np.abs(columns["guidance_pseudo_work"] - columns["driver_pseudo_work"])
+    opposed = (columns["torque_agreement"] < 0.0) & np.isfinite(gap)
+    return np.asarray(gap[opposed])
+
+
+def pilot_threshold(num_drivers: int, jobs: int = 2) -> PilotResult:
+    """Run the pilot drivers and compute δ.
+
+    Args:
+        num_drivers: How many pilot drivers.
+        jobs: Threads.
+    """
+    setups = [s for n in range(1, num_drivers + 1) for s in agreeing_setups(n)]
+    with ThreadPoolExecutor(jobs) as pool:
+        gaps = np.concatenate(list(pool.map(opposed_gaps, setups)))
+    percentile = float(np.percentile(gaps, PERCENTILE))
+    return PilotResult(num_drivers, len(gaps), percentile, FACTOR * percentile)
