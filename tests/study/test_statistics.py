@@ -1,7 +1,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 
 import numpy as np
 import pandas as pd
@@ -276,6 +276,15 @@ def test_small_studies_work_with_what_they_have(
     assert math.isfinite(effect(found, "overshoot", "within").p) == enough
 
 
+def test_missing_cell_of_one_strength_leaves_durations_to_the_mixed_model() -> None:
+    trials, changes = made_up_study(conditions=CONDITION_NAMES[:4])
+    gone = (changes["participant"] == 3) & (changes["condition"] == "strong-rapid")
+    found = study_tests(trials, without(changes, gone))
+    assert effect(found, "overshoot", "mixed", "change_duration").df1 == 2.0
+    strength = effect(found, "overshoot", "mixed", "strength")
+    assert strength.note.startswith("fewer than two levels")
+
+
 def test_one_strength_still_has_its_durations_compared() -> None:
     found = study_tests(*made_up_study(conditions=CONDITION_NAMES[:4]))
     assert effect(found, "overshoot", "within", "change_duration").df1 == 2.0
@@ -337,7 +346,9 @@ def twice(trials: Columns) -> Columns:
         (twice, "participant 12 has weak-gentle twice"),
     ],
 )
-def test_tables_that_make_no_sense_are_refused(change, message: str) -> None:  # type: ignore[no-untyped-def]  # noqa: ANN001
+def test_tables_that_make_no_sense_are_refused(
+    change: Callable[[Columns], Columns], message: str
+) -> None:
     trials, changes = made_up_study()
     with pytest.raises(ValueError, match=message):
         study_tests(change(trials), changes)

@@ -167,6 +167,4 @@ def _solve(
         low, reach = max(low - reach, floor), 2.0 * reach
     while below(high) > probability:
         high, reach = high + reach, 2.0 * reach
-    if low == high:
-        return low
     return float(optimize.brentq(lambda x: below(x) - probability, low, high))

@@ -44,7 +44,7 @@ def two_way_design(conditions: Sequence[str]) -> Design:
         factor=CONDITION,
         cells=tuple(f"{one}-{other}" for one in strengths for other in durations),
         effects=two_way(STRENGTH, len(strengths), CHANGE_DURATION, len(durations)),
-        note="strength x change duration without manual, type III",
+        note="strength x change duration without manual",
     )
 
 

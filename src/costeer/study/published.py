@@ -29,7 +29,11 @@ def published_effects(
     tests = pooled_f_tests(observed.values[kept], cells[kept], design.effects)
     counts = np.bincount(cells[kept], minlength=len(design.cells))
     empty = [name for name, n in zip(design.cells, counts, strict=True) if n == 0]
-    note = joined(design.note, f"no value in {', '.join(empty)}" if empty else "")
+    note = joined(
+        design.note,
+        "type III sums of squares" if len(design.effects) > 1 else "",
+        f"no value in {', '.join(empty)}" if empty else "",
+    )
     about = About(measure, PUBLISHED, int(counts.sum()), note)
     for effect, test in zip(design.effects, tests, strict=True):
         yield effect_row(about, effect.name, test)
