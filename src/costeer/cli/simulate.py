@@ -1,0 +1,136 @@
+"""`costeer simulate`: one trial, its record, and a short account of it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from costeer.cli.trial_summary import print_summary
+from costeer.cli.units import parse_speed
+
+if TYPE_CHECKING:
+    from costeer.loop.scenario import TrialSetup
+
+
+def simulate(
+    out: Annotated[Path, typer.Option(help="Record to write, FILE.parquet.")],
+    condition: Annotated[
+        str, typer.Option(help="manual, or strong or weak with a duration.")
+    ] = "strong-normal",
+    seed: Annotated[int, typer.Option(help="Of driver, leaders and noise.")] = 1,
+    participant: Annotated[
+        int, typer.Option(help="Number of the driver in the population.")
+    ] = 1,
+    length: Annotated[float, typer.Option(help="Of the course [m].")] = 8000.0,
+    speed: Annotated[
+        float,
+        typer.Option(
+            parser=parse_speed,
+            metavar="SPEED",
+            help="Suggested [m/s], or with its unit: 70km/h.",
+        ),
+    ] = 70 / 3.6,
+    car: Annotated[str, typer.Option(help="default, compact or large.")] = "default",
+    driver: Annotated[str, typer.Option(help="virtual or hands-off.")] = "virtual",
+    intention: Annotated[
+        str, typer.Option(help="network, scripted (the driver's own plan) or off.")
+    ] = "network",
+    method: Annotated[str, typer.Option(help="Guidance, unless manual.")] = "ibhs",
+    trigger_at: Annotated[
+        list[float] | None,
+        typer.Option(
+            metavar="S",
+            help="Make the system start a lane change then; may be repeated.",
+        ),
+    ] = None,
+    events: Annotated[
+        bool, typer.Option("--events/--no-events", help="Leaders to overtake.")
+    ] = True,
+    initial_offset: Annotated[
+        float, typer.Option(metavar="M", help="From the lane's centre at the start.")
+    ] = 0.0,
+    engine: Annotated[str, typer.Option(help="numba, or python for reference.")] = (
+        "numba"
+    ),
+) -> None:
+    """Simulate one trial, write its record and tell what happened.
+
+    Example:
+        costeer simulate --out out/trial.parquet --condition weak-gentle
+        costeer simulate --out out/a.parquet --driver hands-off --trigger-at 20
+    """
+    from costeer.loop.scenario import TrialSetup
+    from costeer.study.conditions import MANUAL
+    from costeer.study.conditions import condition as condition_named
+
+    chosen = condition_named(condition)
+    setup = TrialSetup(
+        participant=participant,
+        seed=seed,
+        condition=chosen.name,
+        strength_factor=chosen.strength_factor,
+        change_duration=chosen.change_duration,
+        method=MANUAL if chosen.name == MANUAL else method,
+        length=length,
+        speed=speed,
+        car=car,
+        driver=driver,
+        intention=intention,
+        trigger_times=tuple(trigger_at or ()),
+        events=events,
+        initial_offset=initial_offset,
+    )
+    simulate_to_file(out, setup, engine)
+
+
+def simulate_to_file(out: Path, setup: TrialSetup, engine: str = "numba") -> None:
+    """Simulate a trial, write its record and print what happened.
+
+    Args:
+        out: File to write. A simulated trial is replaced, nothing else.
+        setup: What the trial is.
+        engine: `numba` or `python`.
+
+    Raises:
+        ValueError: If the setup cannot be run, or the file is not to be replaced.
+        OSError: If the file cannot be written.
+    """
+    from costeer.loop.record import write_record
+    from costeer.loop.scenario import check_setup, is_assisted
+    from costeer.loop.trial import simulate_trial
+
+    check_setup(setup)
+    if setup.trigger_times and not is_assisted(setup):
+        raise ValueError(
+            f"a lane change cannot be started in {setup.condition} with method "
+            f"{setup.method}; choose an assisted condition for --trigger-at"
+        )
+    refuse_to_replace(out)
+    out.parent.mkdir(parents=True, exist_ok=True)
+    record = simulate_trial(setup, engine)
+    write_record(out, record)
+    print_summary(record)
+    typer.echo(out)
+
+
+def refuse_to_replace(out: Path) -> None:
+    """Refuse to overwrite what the same command could not make again.
+
+    Raises:
+        ValueError: If there is a folder, or a file that is no simulated trial.
+    """
+    from costeer.loop.record import read_record
+    from costeer.loop.scenario import DRIVERS
+
+    if not out.exists():
+        return
+    try:
+        driver = str(read_record(out, columns=["time"]).metadata.get("driver"))
+    except (ValueError, IsADirectoryError):
+        driver = ""
+    if not driver.startswith(DRIVERS):
+        raise ValueError(
+            f"{out} exists and is not a simulated trial; choose another --out"
+        )

@@ -1,0 +1,136 @@
+"""`costeer study`: the whole experiment with virtual drivers, then the report."""
+
+from __future__ import annotations
+
+import time
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from costeer.cli.console import note
+from costeer.cli.trial_progress import trial_progress
+from costeer.cli.units import parse_speed
+
+if TYPE_CHECKING:
+    from costeer.study.configuration import StudySettings
+    from costeer.study.run import StudyOutcome
+
+
+def study(
+    out: Annotated[
+        Path, typer.Option(help="Folder of the study; an unfinished one is resumed.")
+    ],
+    participants: Annotated[int, typer.Option(help="Number of virtual drivers.")] = 12,
+    conditions: Annotated[
+        str,
+        typer.Option(help="Names with commas between, such as manual,weak-gentle."),
+    ] = "all",
+    seed: Annotated[int, typer.Option(help="Of drivers, leaders and noise.")] = 1,
+    jobs: Annotated[
+        int | None,
+        typer.Option(help="Trials at a time; as many as processors if not given."),
+    ] = None,
+    method: Annotated[str, typer.Option(help="Guidance of the assisted trials.")] = (
+        "ibhs"
+    ),
+    intention: Annotated[
+        str,
+        typer.Option(help="network, or scripted: the driver's decision is known."),
+    ] = "network",
+    length: Annotated[float, typer.Option(help="Of the course [m].")] = 8000.0,
+    speed: Annotated[
+        float,
+        typer.Option(
+            parser=parse_speed,
+            metavar="SPEED",
+            help="Suggested [m/s], or with its unit: 70km/h.",
+        ),
+    ] = 70 / 3.6,
+    car: Annotated[str, typer.Option(help="default, compact or large.")] = "default",
+    report: Annotated[
+        bool, typer.Option(help="Tests, figures and report.html after the tables.")
+    ] = True,
+) -> None:
+    """Run the whole experiment with virtual drivers, then the report.
+
+    Each participant drives manually, then with guidance of each strength and
+    duration. Stop it with Ctrl-C or kill it: the same command goes on where it
+    stopped, and the results are the same. The results do not depend on --jobs.
+
+    Example:
+        costeer study --out out/study
+        costeer study --out out/quick --participants 2 --length 2000 --no-report
+    """
+    from costeer.study.conditions import parse_conditions
+    from costeer.study.configuration import StudySettings, check_settings
+
+    settings = check_settings(
+        StudySettings(
+            participants=participants,
+            conditions=parse_conditions(conditions),
+            seed=seed,
+            method=method,
+            intention=intention,
+            length=length,
+            speed=speed,
+            car=car,
+        )
+    )
+    _warn_if_unbalanced(settings)
+    _print_outcome(*_run(out, settings, jobs, report), report=report)
+
+
+def _warn_if_unbalanced(settings: StudySettings) -> None:
+    from costeer.study.design import rows_needed
+
+    rows = rows_needed(settings.conditions)
+    if settings.participants % rows:
+        note(
+            f"costeer: the order of conditions is not balanced; give a multiple of "
+            f"{rows} as --participants if it should be"
+        )
+
+
+def _run(
+    out: Path, settings: StudySettings, jobs: int | None, report: bool
+) -> tuple[StudyOutcome, float]:
+    """Run the study behind a progress display; say how to resume if it is stopped.
+
+    Returns:
+        What was done, and how long the trials took [s].
+    """
+    from costeer.study.run import StudyInterrupted, full_report, run_study
+    from costeer.study.trials import TrialDone, study_trials
+
+    begun = ended = time.monotonic()
+    with trial_progress(len(study_trials(settings))) as show:
+
+        def shown(done: TrialDone) -> None:
+            nonlocal ended
+            ended = time.monotonic()
+            show(done)
+
+        try:
+            outcome = run_study(
+                out,
+                settings,
+                jobs=jobs,
+                report=full_report if report else None,
+                progress=shown,
+            )
+        except StudyInterrupted as stop:
+            note(f"costeer: {stop}")
+            raise
+    return outcome, ended - begun
+
+
+def _print_outcome(outcome: StudyOutcome, seconds: float, report: bool) -> None:
+    num_new = outcome.num_trials - outcome.num_resumed
+    rate = outcome.driver_seconds / seconds if seconds > 0 else 0.0
+    typer.echo(
+        f"{num_new} trials simulated, {outcome.num_resumed} were there: "
+        f"{outcome.driver_seconds:,.0f} driver-seconds in {seconds:.1f} s, "
+        f"{rate:,.0f} per second"
+    )
+    typer.echo(outcome.folder / ("report.html" if report else "trials.csv"))

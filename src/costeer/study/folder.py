@@ -1,0 +1,228 @@
+"""The study's folder: who may write in it, and what it says it is.
+
+`study.yaml` holds all that is needed to run the study again. A folder belongs to one
+configuration, and one process works in it at a time; the lock is the kernel's, so
+that a killed owner holds nothing.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import socket
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import yaml
+from filelock import FileLock, Timeout
+
+STUDY_FILE = "study.yaml"
+LOCK_FILE = ".lock"
+PROBE_FILE = ".writable.tmp"
+RECORDS = "records"
+FORMAT = 1
+"""Of the folder; a later one that old code cannot read gets a higher number."""
+
+
+class StudyFolder(NamedTuple):
+    """A folder that belongs to one configuration.
+
+    Attributes:
+        path: The folder.
+        configuration: All that determines the results.
+        hash: Of the configuration.
+    """
+
+    path: Path
+    configuration: dict[str, Any]  # as YAML gives it back
+    hash: str
+
+
+def configuration_hash(configuration: dict[str, Any]) -> str:
+    """Return the SHA-256 of the configuration's canonical JSON, in hexadecimal."""
+    canonical = json.dumps(
+        configuration, sort_keys=True, separators=(",", ":"), allow_nan=False
+    )
+    return hashlib.sha256(canonical.encode()).hexdigest()
+
+
+def record_path(folder: Path, participant: int, condition: str) -> Path:
+    """Return where the trial's record lies: `records/03-strong-rapid.parquet`."""
+    return folder / RECORDS / f"{participant:02d}-{condition}.parquet"
+
+
+def read_study(path: Path) -> StudyFolder:
+    """Return what `study.yaml` in the folder says.
+
+    Raises:
+        ValueError: If it is missing, unreadable or was edited.
+    """
+    file = path / STUDY_FILE
+    if not file.is_file():
+        raise ValueError(f"{path} is not a study folder: it has no {STUDY_FILE}")
+    content = _yaml_mapping(file)
+    configuration = content.get("configuration")
+    if not isinstance(configuration, dict) or content.get("format") != FORMAT:
+        raise ValueError(_unusable(file, f"it is not of format {FORMAT}"))
+    if content.get("configuration_hash") != configuration_hash(configuration):
+        raise ValueError(_unusable(file, "its hash does not fit its configuration"))
+    return StudyFolder(path, configuration, str(content["configuration_hash"]))
+
+
+def _yaml_mapping(file: Path) -> dict[str, Any]:
+    try:
+        content = yaml.safe_load(file.read_text(encoding="utf-8"))
+    except (yaml.YAMLError, UnicodeDecodeError) as error:
+        raise ValueError(_unusable(file, "it is not YAML")) from error
+    if not isinstance(content, dict):
+        raise ValueError(_unusable(file, "it is not YAML of a study"))
+    return content
+
+
+def _unusable(file: Path, why: str) -> str:
+    return f"{file} cannot be used: {why}; restore it, or choose another folder"
+
+
+@contextmanager
+def opened_study(
+    path: Path, configuration: dict[str, object], command: str
+) -> Iterator[StudyFolder]:
+    """Hold the folder for this configuration, new or begun before.
+
+    Args:
+        path: Made if it is not there.
+        configuration: All that determines the results.
+        command: That runs the study again; a comment in `study.yaml`.
+
+    Raises:
+        ValueError: If the folder is another study's, holds other things, or another
+            process works in it.
+        OSError: If it cannot be written.
+    """
+    _prepare(path)
+    with locked(path):
+        folder = StudyFolder(
+            path, dict(configuration), configuration_hash(configuration)
+        )
+        if (path / STUDY_FILE).exists():
+            _refuse_other(folder, read_study(path))
+        else:
+            write_text(path / STUDY_FILE, _study_text(folder, command))
+        _remove_leftovers(path)
+        (path / RECORDS).mkdir(exist_ok=True)
+        yield folder
+
+
+@contextmanager
+def locked(path: Path) -> Iterator[None]:
+    """Hold the folder against other processes.
+
+    Raises:
+        ValueError: If another process holds it.
+    """
+    file = path / LOCK_FILE
+    owner = _owner(file)
+    lock = FileLock(file, thread_local=False)
+    try:
+        lock.acquire(timeout=0)
+    except Timeout:
+        raise ValueError(
+            f"{path} is in use by another costeer ({owner}); wait until it has "
+            "ended, or choose another folder"
+        ) from None
+    try:
+        with suppress(OSError):  # Windows lets nobody write to a locked file
+            file.write_text(f"process {os.getpid()} on {socket.gethostname()}")
+        yield
+    finally:
+        with suppress(OSError):  # Windows removes it only once it is released
+            file.unlink()
+        lock.release()
+
+
+def _owner(file: Path) -> str:
+    with suppress(OSError, UnicodeDecodeError):
+        return file.read_text() or "a process that just started"
+    return "a process that just started"
+
+
+def write_text(file: Path, text: str) -> None:
+    """Write a text file, whole or not at all."""
+    partial = file.with_name(file.name + ".tmp")
+    try:
+        partial.write_text(text, encoding="utf-8", newline="\n")
+        partial.replace(file)
+    except BaseException:
+        partial.unlink(missing_ok=True)
+        raise
+
+
+def _prepare(path: Path) -> None:
+    if path.exists() and not path.is_dir():
+        raise ValueError(f"{path} is a file; give a folder, new or of this study")
+    try:
+        path.mkdir(parents=True, exist_ok=True)
+        _refuse_foreign(path)
+        probe = path / PROBE_FILE
+        probe.touch()
+        probe.unlink(missing_ok=True)
+    except OSError as error:
+        raise OSError(
+            f"cannot write in {path}: {error.strerror}; choose another folder"
+        ) from error
+
+
+def _refuse_foreign(path: Path) -> None:
+    """Refuse to spread a study over a folder that holds something else."""
+    names = {entry.name for entry in path.iterdir()}
+    foreign = names - {LOCK_FILE, PROBE_FILE, f"{STUDY_FILE}.tmp"}
+    if foreign and STUDY_FILE not in names:
+        raise ValueError(
+            f"{path} is not empty and not a study folder (it holds {min(foreign)}); "
+            "choose a new or empty folder"
+        )
+
+
+def _refuse_other(wanted: StudyFolder, found: StudyFolder) -> None:
+    if wanted.hash == found.hash:
+        return
+    raise ValueError(
+        f"{wanted.path} holds another study: {differences(found, wanted)}. Choose "
+        "another folder, or give the options of that study to resume it"
+    )
+
+
+def differences(found: StudyFolder, wanted: StudyFolder) -> str:
+    """Name the settings in which two studies differ."""
+    there, here = found.configuration, wanted.configuration
+    changed = [
+        key
+        for key in sorted(there.keys() | here.keys())
+        if key not in _NOT_TOLD and there.get(key) != here.get(key)
+    ]
+    told = [f"{key} is {there.get(key)} there, {here.get(key)} here" for key in changed]
+    return "; ".join(told) or "it was simulated by other sources of costeer"
+
+
+_NOT_TOLD = ("order", "simulation_source")
+"""Follows from the others; says nothing to a reader."""
+
+
+def _study_text(folder: StudyFolder, command: str) -> str:
+    content = {
+        "format": FORMAT,
+        "configuration_hash": folder.hash,
+        "configuration": folder.configuration,
+    }
+    body = yaml.safe_dump(content, sort_keys=False, allow_unicode=True, width=88)
+    return f"# A costeer study. Run it again, or finish it, with\n#   {command}\n{body}"
+
+
+def _remove_leftovers(path: Path) -> None:
+    """Remove what a killed process had half written."""
+    for folder in (path, path / RECORDS, path / "figures"):
+        for leftover in folder.glob("*.tmp"):
+            leftover.unlink(missing_ok=True)

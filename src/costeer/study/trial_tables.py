@@ -1,0 +1,95 @@
+"""`trials.csv` and `lane_changes.csv`: a row per trial, a row per lane change.
+
+Numbers are written so that they read back bit for bit; what is undefined, such as
+the duration of a lane change in manual driving, is an empty cell.
+"""
+
+from __future__ import annotations
+
+import csv
+import io
+import math
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from costeer.study.folder import write_text
+
+TRIALS_FILE = "trials.csv"
+LANE_CHANGES_FILE = "lane_changes.csv"
+
+LANE_CHANGE_COLUMNS = (
+    "participant",
+    "condition",
+    "strength",
+    "change_duration",
+    "index",
+    "direction",
+    "start_time",
+    "crossing_time",
+    "end_time",
+    "duration",
+    "overshoot",
+    "steering_velocity_rms",
+    "peak_steering_angle",
+    "assisted",
+    "duration_by_speed",
+    "onset_to_crossing",
+    "peak_lateral_speed",
+    "duration_quarter_degree",
+    "duration_one_degree",
+    "detection_lead_time",
+    "num_inconsistencies",
+)
+"""Head of `lane_changes.csv`, for a study in which nobody changed lanes."""
+
+Row = Mapping[str, object]
+
+
+class TrialRows(NamedTuple):
+    """What the tables say of one trial.
+
+    Attributes:
+        measures: Its row of `trials.csv`.
+        lane_changes: Its rows of `lane_changes.csv`, in time.
+    """
+
+    measures: Row
+    lane_changes: Sequence[Row]
+
+
+def write_trial_tables(folder: Path, trials: Sequence[TrialRows]) -> None:
+    """Write both tables, rows in the order of the trials."""
+    write_csv(folder / TRIALS_FILE, [each.measures for each in trials])
+    changes = [row for each in trials for row in each.lane_changes]
+    write_csv(folder / LANE_CHANGES_FILE, changes, LANE_CHANGE_COLUMNS)
+
+
+def write_csv(file: Path, rows: Sequence[Row], columns: Sequence[str] = ()) -> None:
+    """Write rows of equal keys as CSV, whole or not at all.
+
+    Args:
+        file: To write or replace.
+        rows: By column name.
+        columns: Names to write if there is no row.
+    """
+    names = list(rows[0]) if rows else list(columns)
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(names)
+    writer.writerows([cell(row[name]) for name in names] for row in rows)
+    write_text(file, text.getvalue())
+
+
+def cell(value: object) -> str:
+    """Return the text of one cell: exact, and empty if the value is undefined."""
+    plain = value.item() if isinstance(value, np.generic) else value
+    if plain is None or plain is np.ma.masked:
+        return ""
+    if isinstance(plain, bool):
+        return "true" if plain else "false"
+    if isinstance(plain, float):
+        return "" if math.isnan(plain) else repr(plain)
+    return str(plain)

@@ -1,0 +1,50 @@
+"""A study in a moment: made-up trials instead of simulated ones."""
+
+from __future__ import annotations
+
+import hashlib
+from pathlib import Path
+
+from costeer.loop.record import TrialRecord
+from costeer.loop.scenario import TrialSetup
+from costeer.study.configuration import StudySettings
+from costeer.study.run import StudyOutcome, run_study
+from tests.study.synthetic import synthetic_record
+
+# 1800 m hold one overtaking event with its two lane changes.
+SMALL = StudySettings(
+    participants=2,
+    conditions=("manual", "strong-rapid", "weak-gentle"),
+    intention="scripted",
+    length=1800.0,
+)
+NUM_TRIALS = 6
+
+
+def made_up(setup: TrialSetup) -> TrialRecord:
+    """A record that depends on the setup alone, as a simulated one does."""
+    return synthetic_record(
+        setup.condition, setup.participant, setup.seed, length=float(setup.length)
+    )
+
+
+def plain_report(folder: Path) -> None:
+    """A report that depends on the tables alone."""
+    tables = (folder / "trials.csv").read_bytes()
+    (folder / "report.html").write_text(hashlib.sha256(tables).hexdigest())
+
+
+def run_small(
+    out: Path, settings: StudySettings = SMALL, jobs: int = 1
+) -> StudyOutcome:
+    """The small study, whole."""
+    return run_study(out, settings, jobs=jobs, report=plain_report, simulate=made_up)
+
+
+def contents(folder: Path) -> dict[str, bytes]:
+    """Every file below the folder, by its path there."""
+    return {
+        file.relative_to(folder).as_posix(): file.read_bytes()
+        for file in sorted(folder.rglob("*"))
+        if file.is_file()
+    }

@@ -1,0 +1,121 @@
+"""What determines a study is in its hash, and wrong settings are refused."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import pytest
+
+from costeer.study.configuration import (
+    PUBLISHED_STUDY,
+    StudySettings,
+    check_settings,
+    settings_of,
+    study_configuration,
+    trial_setup,
+)
+from costeer.study.design import Trial
+from costeer.study.folder import configuration_hash
+
+SCRIPTED = StudySettings(intention="scripted")
+
+
+def settings_with(**changes: Any) -> StudySettings:  # Any: values that are wrong too
+    return StudySettings(**{**SCRIPTED._asdict(), **changes})
+
+
+def hash_of(settings: StudySettings) -> str:
+    return configuration_hash(study_configuration(check_settings(settings)))
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"participants": 6},
+        {"conditions": ("manual", "weak-normal")},
+        {"seed": 2},
+        {"method": "manual"},
+        {"length": 4000.0},
+        {"speed": 20.0},
+        {"car": "large"},
+    ],
+)
+def test_every_setting_changes_the_hash(changes: dict[str, Any]) -> None:
+    assert hash_of(settings_with(**changes)) != hash_of(SCRIPTED)
+
+
+def test_the_order_in_which_conditions_are_listed_does_not_change_the_hash() -> None:
+    turned = settings_with(conditions=SCRIPTED.conditions[::-1])
+    assert hash_of(turned) == hash_of(SCRIPTED)
+
+
+def test_an_edit_of_the_simulation_changes_the_hash(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    before = hash_of(SCRIPTED)
+    monkeypatch.setattr(
+        "costeer.study.configuration.simulation_source", lambda: "edited"
+    )
+    assert hash_of(SCRIPTED) != before
+
+
+def test_a_threshold_changes_the_hash(monkeypatch: pytest.MonkeyPatch) -> None:
+    before = hash_of(SCRIPTED)
+    monkeypatch.setattr(
+        "costeer.study.configuration._thresholds", lambda: {"replan_gain": 0.1}
+    )
+    assert hash_of(SCRIPTED) != before
+
+
+def test_other_weights_change_the_hash(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("costeer.study.configuration._model_hash", lambda _: "a")
+    before = hash_of(PUBLISHED_STUDY)
+    monkeypatch.setattr("costeer.study.configuration._model_hash", lambda _: "b")
+    assert hash_of(PUBLISHED_STUDY) != before
+
+
+def test_settings_come_back_from_their_configuration() -> None:
+    assert settings_of(study_configuration(SCRIPTED)) == SCRIPTED
+
+
+def test_a_configuration_without_a_seed_is_refused() -> None:
+    configuration = study_configuration(SCRIPTED)
+    del configuration["seed"]
+    with pytest.raises(ValueError, match="lacks seed"):
+        settings_of(configuration)
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"participants": 0}, "participants is 0; give a whole number 1 to 9999"),
+        ({"participants": True}, "participants must be a whole number, not True"),
+        ({"participants": 1.5}, "participants must be a whole number, not 1.5"),
+        ({"seed": -1}, "seed is -1; give a whole number 0 to"),
+        ({"method": "magic"}, "method 'magic' is not known"),
+        ({"intention": "off"}, "intention 'off' is not known; choose one of network"),
+        ({"car": "lorry"}, "car 'lorry' is not known"),
+        ({"length": math.inf}, "length is inf"),
+        ({"length": -8000.0}, "length is -8000"),
+        ({"speed": math.nan}, "speed is nan"),
+        ({"speed": 70.0}, "speed is 70"),
+        ({"conditions": ("manual", "manual")}, "given twice"),
+        ({"conditions": ()}, "no condition given"),
+    ],
+)
+def test_a_wrong_setting_is_refused(changes: dict[str, Any], message: str) -> None:
+    with pytest.raises(ValueError, match=message):
+        check_settings(settings_with(**changes))
+
+
+def test_manual_trials_know_no_other_method() -> None:
+    setup = trial_setup(SCRIPTED, Trial(3, "manual", 1))
+    assert (setup.method, setup.strength_factor) == ("manual", 0.0)
+
+
+def test_an_assisted_trial_takes_strength_and_duration_from_its_condition() -> None:
+    setup = trial_setup(SCRIPTED, Trial(3, "weak-rapid", 4))
+    assert (setup.participant, setup.condition) == (3, "weak-rapid")
+    assert (setup.method, setup.strength_factor) == ("ibhs", 0.4)
+    assert setup.change_duration == 4.0

@@ -1,0 +1,205 @@
+"""A folder belongs to one study, and one process works in it at a time."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+import yaml
+
+from costeer.study.folder import (
+    LOCK_FILE,
+    STUDY_FILE,
+    locked,
+    opened_study,
+    read_study,
+    record_path,
+    write_text,
+)
+
+CONFIGURATION: dict[str, object] = {"seed": 1, "speed": 70 / 3.6, "order": [["manual"]]}
+HOLD = """
+import sys, time
+from pathlib import Path
+from costeer.study.folder import locked
+with locked(Path(sys.argv[1])):
+    print("held", flush=True)
+    time.sleep(60)
+"""
+
+
+def begin(path: Path, configuration: dict[str, object] = CONFIGURATION) -> None:
+    with opened_study(path, configuration, "costeer study"):
+        pass
+
+
+def holder_of(path: Path) -> subprocess.Popen[str]:
+    """A process that holds the folder."""
+    command = [sys.executable, "-c", HOLD, str(path)]
+    process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
+    assert process.stdout is not None
+    assert process.stdout.readline() == "held\n"
+    return process
+
+
+def test_what_was_begun_can_be_read(tmp_path: Path) -> None:
+    begin(tmp_path / "new" / "study")
+    study = read_study(tmp_path / "new" / "study")
+    assert study.configuration == CONFIGURATION
+    assert len(study.hash) == 64
+
+
+def test_a_new_folder_holds_the_command_and_a_place_for_records(tmp_path: Path) -> None:
+    begin(tmp_path)
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["records", STUDY_FILE]
+    text = (tmp_path / STUDY_FILE).read_text(encoding="utf-8")
+    assert "#   costeer study\n" in text
+
+
+def test_record_names_sort_by_participant(tmp_path: Path) -> None:
+    path = record_path(tmp_path, 3, "weak-gentle")
+    assert path == tmp_path / "records" / "03-weak-gentle.parquet"
+
+
+def test_the_same_study_is_opened_again_unchanged(tmp_path: Path) -> None:
+    begin(tmp_path)
+    before = (tmp_path / STUDY_FILE).read_bytes()
+    begin(tmp_path)
+    assert (tmp_path / STUDY_FILE).read_bytes() == before
+
+
+def test_another_study_is_refused_and_told_apart(tmp_path: Path) -> None:
+    begin(tmp_path)
+    with pytest.raises(ValueError, match=r"seed is 1 there, 2 here.*another folder"):
+        begin(tmp_path, {**CONFIGURATION, "seed": 2})
+
+
+def test_other_sources_are_told_without_their_hashes(tmp_path: Path) -> None:
+    begin(tmp_path, {**CONFIGURATION, "simulation_source": "a"})
+    with pytest.raises(ValueError, match="simulated by other sources of costeer"):
+        begin(tmp_path, {**CONFIGURATION, "simulation_source": "b"})
+
+
+def test_a_folder_of_other_things_is_refused_and_left_alone(tmp_path: Path) -> None:
+    (tmp_path / "thesis.tmp").write_text("years")
+    with pytest.raises(ValueError, match=r"not a study folder \(it holds thesis"):
+        begin(tmp_path)
+    assert [p.name for p in tmp_path.iterdir()] == ["thesis.tmp"]
+
+
+def test_a_file_is_refused(tmp_path: Path) -> None:
+    (tmp_path / "out").write_text("")
+    with pytest.raises(ValueError, match="is a file; give a folder"):
+        begin(tmp_path / "out")
+
+
+def test_a_file_in_the_way_is_named(tmp_path: Path) -> None:
+    (tmp_path / "out").write_text("")
+    with pytest.raises(OSError, match=r"cannot write in .*study: Not a directory"):
+        begin(tmp_path / "out" / "study")
+
+
+def test_a_folder_that_cannot_be_written_is_named(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    # Root may write anywhere, so the refusal is made up.
+    def refuse(*_: object, **__: object) -> None:
+        raise PermissionError(13, "Permission denied")
+
+    monkeypatch.setattr(Path, "touch", refuse)
+    with pytest.raises(OSError, match="Permission denied; choose another folder"):
+        begin(tmp_path)
+
+
+def test_leftovers_of_a_killed_process_are_removed(tmp_path: Path) -> None:
+    begin(tmp_path)
+    for name in ("records/01-manual.parquet.tmp", "trials.csv.tmp"):
+        (tmp_path / name).write_text("half")
+    begin(tmp_path)
+    assert not list(tmp_path.rglob("*.tmp"))
+
+
+def test_killed_before_the_study_was_written_is_a_new_folder(tmp_path: Path) -> None:
+    (tmp_path / LOCK_FILE).write_text("process 1")
+    (tmp_path / f"{STUDY_FILE}.tmp").write_text("half")
+    begin(tmp_path)
+    assert read_study(tmp_path).configuration == CONFIGURATION
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("a: [", "it is not YAML"),
+        ("- 1", "it is not YAML of a study"),
+        ("format: 99\nconfiguration: {}", "it is not of format 1"),
+        ("configuration: 3\nformat: 1", "it is not of format 1"),
+    ],
+)
+def test_a_damaged_study_file_is_refused(
+    tmp_path: Path, text: str, message: str
+) -> None:
+    (tmp_path / STUDY_FILE).write_text(text)
+    with pytest.raises(ValueError, match=message):
+        begin(tmp_path)
+
+
+def test_an_edited_study_file_is_refused(tmp_path: Path) -> None:
+    begin(tmp_path)
+    file = tmp_path / STUDY_FILE
+    content = yaml.safe_load(file.read_text(encoding="utf-8"))
+    content["configuration"]["seed"] = 7
+    file.write_text(yaml.safe_dump(content))
+    with pytest.raises(ValueError, match="its hash does not fit"):
+        read_study(tmp_path)
+
+
+def test_a_folder_without_a_study_is_not_read(tmp_path: Path) -> None:
+    with pytest.raises(ValueError, match=r"not a study folder: it has no study\.yaml"):
+        read_study(tmp_path)
+
+
+def test_a_lock_in_this_process_is_respected(tmp_path: Path) -> None:
+    with (
+        locked(tmp_path),
+        pytest.raises(ValueError, match=r"in use by another costeer \(process \d+"),
+    ):
+        begin(tmp_path)
+
+
+def test_a_live_process_keeps_its_folder_and_a_killed_one_does_not(
+    tmp_path: Path,
+) -> None:
+    process = holder_of(tmp_path)
+    try:
+        with pytest.raises(
+            ValueError, match=f"process {process.pid} on .*; wait until"
+        ):
+            begin(tmp_path)
+    finally:
+        process.kill()
+        process.communicate()
+    begin(tmp_path)
+
+
+def test_the_lock_leaves_nothing_behind(tmp_path: Path) -> None:
+    with locked(tmp_path):
+        assert (tmp_path / LOCK_FILE).exists()
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_text_that_cannot_be_written_leaves_the_old_one(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    file = tmp_path / "trials.csv"
+    write_text(file, "old")
+
+    def full(*_: object) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(Path, "replace", full)
+    with pytest.raises(OSError, match="No space left"):
+        write_text(file, "new")
+    assert [p.name for p in tmp_path.iterdir()] == ["trials.csv"]
+    assert file.read_text() == "old"

@@ -1,0 +1,60 @@
+"""Tables are exact, and undefined values are empty cells."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from costeer.study.measures import lane_change_rows
+from costeer.study.trial_tables import (
+    LANE_CHANGE_COLUMNS,
+    TrialRows,
+    cell,
+    write_csv,
+    write_trial_tables,
+)
+from tests.study.synthetic import synthetic_record
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [
+        (0.1, "0.1"),
+        (np.float64(0.1), "0.1"),
+        (1e-300, "1e-300"),
+        (np.int8(-1), "-1"),
+        (True, "true"),
+        (np.bool_(False), "false"),
+        ("strong", "strong"),
+        (None, ""),
+        (math.nan, ""),
+        (np.float64("nan"), ""),
+        (np.ma.masked, ""),
+    ],
+)
+def test_a_cell_is_exact_or_empty(value: object, text: str) -> None:
+    assert cell(value) == text
+
+
+def test_numbers_read_back_bit_for_bit() -> None:
+    for value in np.random.default_rng(1).normal(size=100):
+        assert float(cell(value)) == value
+
+
+def test_a_comma_in_a_text_stays_in_its_cell(tmp_path: Path) -> None:
+    write_csv(tmp_path / "t.csv", [{"a": "x, y", "b": 1}])
+    assert (tmp_path / "t.csv").read_bytes() == b'a,b\n"x, y",1\n'
+
+
+def test_lane_changes_are_headed_even_if_there_are_none(tmp_path: Path) -> None:
+    write_trial_tables(tmp_path, [TrialRows({"participant": 1}, [])])
+    text = (tmp_path / "lane_changes.csv").read_text(encoding="utf-8")
+    assert text == ",".join(LANE_CHANGE_COLUMNS) + "\n"
+
+
+def test_that_head_is_the_one_of_a_study_with_lane_changes() -> None:
+    changes = lane_change_rows(synthetic_record(length=2000.0))
+    assert tuple(changes[0]) == LANE_CHANGE_COLUMNS
