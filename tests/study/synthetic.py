@@ -183,7 +183,7 @@ def _guidance(
     if strength[0] == 0.0:
         return _no_guidance(num_rows) | {"driver_torque": effort}
     disputed = _disputed(motion)
-    gain = _gain(~disputed)
+    gain = faded_gain(~disputed)
     mode = np.full(num_rows, "lane_keeping", dtype="<U13")
     target = car["lane"].copy()
     for start, duration, direction, trigger in motion.changes:
@@ -241,7 +241,7 @@ def _disputed(motion: Motion) -> NDArray[np.bool_]:
     return disputed
 
 
-def _gain(consistent: NDArray[np.bool_]) -> Signal:
+def faded_gain(consistent: NDArray[np.bool_]) -> Signal:
     """Haptic gain after Eqs. (10) to (13): steepness 4 per second, midpoint 1 s."""
     gain = np.ones(consistent.size)
     held, since = 1.0, 10.0

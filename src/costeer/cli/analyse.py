@@ -1,0 +1,178 @@
+"""`costeer analyse`: driving measures of records and of tables of others."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from costeer.cli.validate import at_least, positive
+
+if TYPE_CHECKING:
+    from costeer.study.analysis import Analysis
+
+
+def analyse(
+    files: Annotated[
+        list[Path],
+        typer.Argument(help="Trial records, CSV (also .csv.gz) or Parquet tables."),
+    ],
+    rename: Annotated[
+        list[str] | None,
+        typer.Option(metavar="OLD=NEW", help="Name of a column; repeatable."),
+    ] = None,
+    scale: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="COLUMN=FACTOR",
+            help="Factor to SI units, by the new name; repeatable.",
+        ),
+    ] = None,
+    sequence: Annotated[
+        str,
+        typer.Option(
+            metavar="COLUMN",
+            help="Column that tells separate stretches apart; [default: sequence]",
+        ),
+    ] = "",
+    cutoff: Annotated[
+        float,
+        typer.Option(
+            callback=at_least(0, "Hz"),
+            help="Low-pass before reversals are counted [Hz]; 0 for none.",
+        ),
+    ] = 0.6,
+    gap_deg: Annotated[
+        float,
+        typer.Option(callback=positive("deg"), help="Gap of a reversal [deg]."),
+    ] = 3.0,
+    json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
+) -> None:
+    """Compute driving measures from records or a table.
+
+    A table needs a column time [s] and any of a trial record's columns in SI units;
+    steering_wheel_angle alone gives the reversal rate. What cannot be computed is
+    listed with the reason.
+
+    Example:
+        costeer analyse drive.csv --rename t=time --rename angle=steering_wheel_angle
+        --scale steering_wheel_angle=0.0174533
+    """
+    from math import radians
+
+    from costeer.study.analysis import analyse_file
+    from costeer.study.definitions import MeasureParameters
+    from costeer.study.recordings import Adaptation
+
+    adaptation = Adaptation(
+        renames=pairs("--rename", rename or []),
+        scales=factors(scale or []),
+        sequence=sequence,
+    )
+    parameters = MeasureParameters(
+        reversal_angle=radians(gap_deg), reversal_cutoff=cutoff
+    )
+    found = [a for file in files for a in analyse_file(file, adaptation, parameters)]
+    show_json(found) if json else show_tables(found)
+
+
+def pairs(option: str, words: list[str]) -> dict[str, str]:
+    """Names before and after the equals sign of a repeated option.
+
+    Raises:
+        ValueError: If there is no equals sign, or a name is missing or given twice.
+    """
+    found: dict[str, str] = {}
+    for word in words:
+        name, sign, value = word.partition("=")
+        if not (name and sign and value):
+            raise ValueError(f"{option} {word}: write it as name=value")
+        if name in found or (option == "--rename" and value in found.values()):
+            raise ValueError(f"{option} {word}: this name is given twice")
+        found[name] = value
+    return found
+
+
+def factors(words: list[str]) -> dict[str, float]:
+    """Column names and factors of `--scale`.
+
+    Raises:
+        ValueError: If one is not a number.
+    """
+    found: dict[str, float] = {}
+    for name, text in pairs("--scale", words).items():
+        try:
+            found[name] = float(text)
+        except ValueError as error:
+            raise ValueError(f"--scale {name}={text}: {text} is no number") from error
+    return found
+
+
+def show_json(analyses: list[Analysis]) -> None:
+    """Print the analyses as one JSON list."""
+    import json
+
+    from costeer.study.analysis import as_json
+
+    typer.echo(json.dumps(as_json(analyses), indent=2, ensure_ascii=False))
+
+
+def show_tables(analyses: list[Analysis]) -> None:
+    """Print a table of measures for each stretch, then what could not be computed."""
+    from costeer.cli.console import print_table
+
+    for each in analyses:
+        measured = {k: m for k, m in each.measures.items() if not m.reason}
+        rows = [[k, f"{m.value:.4g}", m.unit] for k, m in measured.items()]
+        typer.echo(_title(each))
+        print_table(["measure", "value", "unit"], rows)
+        _show_lane_changes(each)
+        for line in (*_not_computed(each), *(f"note: {n}" for n in each.notes)):
+            typer.echo(line)
+        typer.echo()
+
+
+def _title(each: Analysis) -> str:
+    name = f"{each.source}, sequence {each.sequence}" if each.sequence else each.source
+    seconds = each.num_rows / each.sampling.rate
+    return f"{name}: {seconds:.1f} s at {each.sampling.rate:.4g} Hz"
+
+
+# Short headings, so that the table fits a terminal 80 characters wide.
+_HEADINGS = {
+    "index": "no.",
+    "direction": "to",
+    "crossing_time": "at s",
+    "duration": "for s",
+    "overshoot": "beyond m",
+    "steering_velocity_rms": "rms rad/s",
+    "peak_steering_angle": "peak rad",
+    "detection_lead_time": "lead s",
+}
+
+
+def _show_lane_changes(each: Analysis) -> None:
+    from costeer.cli.console import print_table
+
+    rows = [[_cell(row[name]) for name in _HEADINGS] for row in each.lane_changes]
+    if rows:
+        title = "Lane changes: to -1 right, +1 left"
+        print_table(list(_HEADINGS.values()), rows, title=title)
+
+
+def _cell(value: object) -> str:
+    if isinstance(value, float):
+        return "-" if value != value else f"{value:.4g}"
+    return str(value)
+
+
+def _not_computed(each: Analysis) -> list[str]:
+    """One line per reason, with the measures it stands in the way of."""
+    names: dict[str, list[str]] = {}
+    for name, measure in each.measures.items():
+        if measure.reason:
+            names.setdefault(measure.reason, []).append(name)
+    return [
+        f"not computed: {', '.join(held)}: {reason}" for reason, held in names.items()
+    ]

@@ -1,0 +1,169 @@
+"""Measures of a file: a trial record, or any table with some of its columns."""
+
+import os
+from collections.abc import Iterable
+from math import isnan
+from typing import NamedTuple
+
+import numpy as np
+
+from costeer.loop.columns import TrialRecord
+from costeer.loop.record import read_recording
+from costeer.study.definitions import DEFAULTS, Columns, Measure, MeasureParameters
+from costeer.study.measures import Row, lane_change_rows, parameters_of
+from costeer.study.recordings import (
+    AS_IT_IS,
+    Adaptation,
+    Stretch,
+    stretches,
+    suspicions,
+)
+from costeer.study.sampling import EVEN_ENOUGH, Sampling, evened, sampling
+from costeer.study.trial_measures import prepare, trial_measures
+
+_TOO_SLOW = 6.0  # [Hz]: ten samples per period of the reversal rate's low-pass
+
+
+class Analysis(NamedTuple):
+    """What a recording, or one stretch of it, gave.
+
+    Attributes:
+        source: File it came from.
+        sequence: Name of the stretch; empty if the file is one.
+        num_rows: Samples.
+        sampling: Rate and regularity.
+        measures: By name as in `trials.csv`; those without a value say why.
+        lane_changes: Rows as in `lane_changes.csv`.
+        notes: What the reader should know before trusting the numbers.
+    """
+
+    source: str
+    sequence: str
+    num_rows: int
+    sampling: Sampling
+    measures: dict[str, Measure]
+    lane_changes: list[Row]
+    notes: tuple[str, ...]
+
+
+def analyse_file(
+    path: str | os.PathLike[str],
+    adaptation: Adaptation = AS_IT_IS,
+    parameters: MeasureParameters = DEFAULTS,
+) -> list[Analysis]:
+    """Measure every stretch of a file.
+
+    Args:
+        path: Trial record, CSV (gzipped too) or Parquet.
+        adaptation: Names, units and stretches of a foreign table.
+        parameters: Thresholds of the measures.
+
+    Raises:
+        ValueError: If the file cannot be understood or is sampled too irregularly.
+        OSError: If it cannot be read.
+    """
+    recording = read_recording(path)
+    try:
+        return analyse(recording, adaptation, parameters, source=str(path))
+    except ValueError as error:
+        raise ValueError(f"{path}: {error}") from error
+
+
+def analyse(
+    recording: TrialRecord,
+    adaptation: Adaptation = AS_IT_IS,
+    parameters: MeasureParameters = DEFAULTS,
+    source: str = "",
+) -> list[Analysis]:
+    """Measure every stretch of a recording; see `analyse_file`."""
+    parameters = parameters_of(recording, parameters)
+    parts = stretches(recording.columns, adaptation)
+    return [_analysed(recording, part, parameters, source) for part in parts]
+
+
+def _analysed(
+    recording: TrialRecord, part: Stretch, parameters: MeasureParameters, source: str
+) -> Analysis:
+    found = _sampling(part)
+    even = TrialRecord(recording.metadata, dict(evened(part.columns, found)))
+    measures = trial_measures(prepare(even.columns, parameters))
+    return Analysis(
+        source=source,
+        sequence=part.name,
+        num_rows=int(part.columns["time"].size),
+        sampling=found,
+        measures=measures,
+        lane_changes=lane_change_rows(even, parameters),
+        notes=tuple(_notes(even.columns, found, measures, part.ignored)),
+    )
+
+
+def _sampling(part: Stretch) -> Sampling:
+    try:
+        return sampling(part.columns["time"])
+    except ValueError as error:
+        name = f"sequence {part.name}: " if part.name else ""
+        raise ValueError(f"{name}{error}") from error
+
+
+def _notes(
+    columns: Columns,
+    found: Sampling,
+    measures: dict[str, Measure],
+    ignored: Iterable[str],
+) -> list[str]:
+    notes = suspicions(columns)
+    if found.unevenness > EVEN_ENOUGH:
+        notes.append(
+            f"unevenly sampled, steps up to {found.longest_step:.3g} s: interpolated "
+            f"to {found.rate:.4g} samples per second"
+        )
+    if found.rate < _TOO_SLOW:
+        notes.append(
+            f"{found.rate:.3g} samples per second are few for a reversal rate; "
+            f"give {_TOO_SLOW:g}"
+        )
+    if not measures["swrr"].reason and measures["sdlp"].reason:
+        notes.append("swrr is of the whole recording, as lane keeping is not known")
+    if not measures["sdlp"].reason and "event" not in columns:
+        notes.append("there is no column event, so no overtaking events are left out")
+    if any(ignored):
+        notes.append(f"columns not used: {', '.join(ignored)}")
+    return notes
+
+
+def as_json(analyses: Iterable[Analysis]) -> list[dict[str, object]]:
+    """The analyses in JSON's own types; what is not known is null and says why."""
+    return [
+        {
+            "source": each.source,
+            "sequence": each.sequence,
+            "num_rows": each.num_rows,
+            "sampling": each.sampling._asdict(),
+            "measures": {k: _measure(v) for k, v in each.measures.items()},
+            "lane_changes": [_plain_row(row) for row in each.lane_changes],
+            "notes": list(each.notes),
+        }
+        for each in analyses
+    ]
+
+
+def _measure(measure: Measure) -> dict[str, object]:
+    return {
+        "value": _plain(measure.value),
+        "unit": measure.unit,
+        **({"reason": measure.reason} if measure.reason else {}),
+    }
+
+
+def _plain_row(row: Row) -> dict[str, object]:
+    return {name: _plain(value) for name, value in row.items()}
+
+
+def _plain(value: object) -> object:
+    """The value without numpy, NaN and infinity as None."""
+    if isinstance(value, np.generic):
+        value = value.item()
+    if isinstance(value, float) and (isnan(value) or np.isinf(value)):
+        return None
+    return value
