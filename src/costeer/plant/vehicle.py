@@ -50,6 +50,21 @@ class VehicleInput(NamedTuple):
 
 
 @compiled
+def front_slip_tangent(
+    car: CarParameters,
+    longitudinal_velocity: Real,
+    lateral_velocity: Real,
+    yaw_rate: Real,
+    road_wheel_angle: Real,
+) -> Real:
+    """Tangent of the front slip angle [-]: of a difference of two directions."""
+    speed = xp.maximum(longitudinal_velocity, _SLOWEST)
+    direction = (lateral_velocity + car.front_distance * yaw_rate) / speed
+    wheel = xp.tan(road_wheel_angle)
+    return (direction - wheel) / (1.0 + direction * wheel)
+
+
+@compiled
 def front_slip_angle(
     car: CarParameters,
     longitudinal_velocity: Real,
@@ -58,28 +73,30 @@ def front_slip_angle(
     road_wheel_angle: Real,
 ) -> Real:
     """Direction of the front tyre's velocity minus that of the wheel [rad]."""
-    speed = xp.maximum(longitudinal_velocity, _SLOWEST)
-    sideways = lateral_velocity + car.front_distance * yaw_rate
-    return xp.atan(sideways / speed) - road_wheel_angle
+    return xp.atan(
+        front_slip_tangent(
+            car, longitudinal_velocity, lateral_velocity, yaw_rate, road_wheel_angle
+        )
+    )
 
 
 @compiled
-def rear_slip_angle(
+def rear_slip_tangent(
     car: CarParameters,
     longitudinal_velocity: Real,
     lateral_velocity: Real,
     yaw_rate: Real,
 ) -> Real:
-    """Direction of the rear tyre's velocity minus that of the wheel [rad]."""
+    """Tangent of the rear slip angle [-]; the rear wheels do not steer."""
     speed = xp.maximum(longitudinal_velocity, _SLOWEST)
-    return xp.atan((lateral_velocity - car.rear_distance * yaw_rate) / speed)
+    return (lateral_velocity - car.rear_distance * yaw_rate) / speed
 
 
 @compiled
 def front_lateral_force(state: VehicleState, motion: VehicleInput) -> Real:
     """Lateral force of the front axle [N]."""
     car = motion.car
-    slip = front_slip_angle(
+    slip = front_slip_tangent(
         car,
         state.longitudinal_velocity,
         state.lateral_velocity,
@@ -94,7 +111,7 @@ def front_lateral_force(state: VehicleState, motion: VehicleInput) -> Real:
 def rear_lateral_force(state: VehicleState, motion: VehicleInput) -> Real:
     """Lateral force of the rear axle [N]."""
     car = motion.car
-    slip = rear_slip_angle(
+    slip = rear_slip_tangent(
         car, state.longitudinal_velocity, state.lateral_velocity, state.yaw_rate
     )
     load = car.mass * GRAVITY * car.front_distance / wheelbase(car)
