@@ -20,7 +20,7 @@ from costeer.drivers.decision import time_to_crossing
 from costeer.drivers.driver import DriverNoise
 from costeer.intention.features import IntentionSample, facing
 from costeer.intention.wavefront import WavefrontState, WavefrontWeights, advance
-from costeer.loop.rows import Row, row
+from costeer.loop.rows import ROW_COLUMNS, Row, row
 from costeer.loop.step import (
     DT,
     LoopParameters,
@@ -131,7 +131,7 @@ def run(
         weights: Of the network.
         memory: Of the network, changed in place.
         noise: Random numbers, shape `(time, draw)`.
-        rows: Filled in the order of `Row`, shape `(time, column)`.
+        rows: Filled in the order of `ROW_COLUMNS`, shape `(time, column)`.
     """
     state = initial_state(parameters)
     for k in range(len(noise)):
@@ -174,12 +174,12 @@ def rollout(
         engine: "numba" or "python".
 
     Returns:
-        Rows in the order of `Row`, shape `(time, column)`.
+        Rows in the order of `ROW_COLUMNS`, shape `(time, column)`.
 
     Raises:
         ValueError: If the engine is not known.
     """
-    rows = np.empty((len(noise), len(Row._fields)))
+    rows = np.empty((len(noise), len(ROW_COLUMNS)))
     if engine == "numba":
         given = packed(parameters)
         count = _run_compiled(given, script, weights, memory, noise, rows)

@@ -24,7 +24,7 @@ from costeer.intention.weights import IntentionNetwork, load_weights
 from costeer.loop.columns import COLUMNS, MODES, Column, TrialRecord
 from costeer.loop.noise import driver_noise
 from costeer.loop.rollout import Script, rollout
-from costeer.loop.rows import Row
+from costeer.loop.rows import ROW_COLUMNS
 from costeer.loop.scenario import (
     INTENTIONS,
     TrialSetup,
@@ -135,12 +135,12 @@ def record_columns(
     """Rows of the loop as the columns of a record.
 
     Args:
-        rows: In the order of `Row`, shape `(time, column)`.
+        rows: In the order of `ROW_COLUMNS`, shape `(time, column)`.
         assisted: Without assistance the guidance columns are empty.
     """
     columns = {}
     for column in COLUMNS:
-        values = np.ascontiguousarray(rows[:, Row._fields.index(column.name)])
+        values = np.ascontiguousarray(rows[:, ROW_COLUMNS.index(column.name)])
         if column.name == "mode":
             columns["mode"] = np.array(MODES)[values.astype(int) * assisted]
             continue
