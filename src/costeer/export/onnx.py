@@ -6,7 +6,9 @@ Needs the package `onnx` (extra `dev`); nothing else in costeer does.
 from __future__ import annotations
 
 import json
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -40,25 +42,14 @@ def _initializers(weights: NetworkWeights) -> dict[str, NDArray[np.generic]]:
         "B": np.concatenate(biases).reshape(1, 6 * hidden),
         "output_weights": weights.output_weights.reshape(hidden, 1),
         "output_bias": weights.output_bias,
+        "first": np.array([0], np.int64),
         "flat": np.array([-1], np.int64),
     }
 
 
-def write_onnx(path: Path, network: IntentionNetwork) -> None:
-    """Write the network with its scaling as one ONNX graph.
-
-    Input `feature_window`, float32 `(batch, 180, 6)` in the signals' units, facing
-    right (intention/features.py); output `crossing_probability`, `(batch,)`.
-
-    Raises:
-        ImportError: If the package `onnx` is not installed.
-    """
-    import onnx
-    from onnx import helper, numpy_helper
-
-    hidden = hidden_size(network.weights)
-    node = helper.make_node
-    nodes = [
+def _nodes(node: Callable[..., Any], hidden: int) -> list[Any]:  # Any: onnx.NodeProto
+    """Scale, run the GRU, close with the sigmoid."""
+    return [
         node("Sub", ["feature_window", "mean"], ["centred"]),
         node("Div", ["centred", "scale"], ["deviation"]),
         node("Clip", ["deviation", "low", "high"], ["scaled"]),
@@ -76,7 +67,22 @@ def write_onnx(path: Path, network: IntentionNetwork) -> None:
         node("Sigmoid", ["logit"], ["probability"]),
         node("Reshape", ["probability", "flat"], ["crossing_probability"]),
     ]
-    constants = _initializers(network.weights) | {"first": np.array([0], np.int64)}
+
+
+def write_onnx(path: Path, network: IntentionNetwork) -> None:
+    """Write the network with its scaling as one ONNX graph.
+
+    Input `feature_window`, float32 `(batch, 180, 6)` in the signals' units, facing
+    right (intention/features.py); output `crossing_probability`, `(batch,)`.
+
+    Raises:
+        ImportError: If the package `onnx` is not installed.
+    """
+    import onnx
+    from onnx import helper, numpy_helper
+
+    nodes = _nodes(helper.make_node, hidden_size(network.weights))
+    constants = _initializers(network.weights)
     kind = onnx.TensorProto.FLOAT
     shape: list[str | int | None] = ["batch", WINDOW_LENGTH, NUM_FEATURES]
     value = helper.make_tensor_value_info

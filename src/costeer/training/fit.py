@@ -1,0 +1,205 @@
+"""Fit the network by gradient descent; the best weights on unseen drivers win.
+
+Needs JAX and Optax (extra `train`). Loss: weighted log loss. Every so many steps the
+exact window runs over the validation drivers' whole recordings, as it will in the loop;
+the weights with the lowest log loss there are kept, and the training stops when it has
+not fallen for a while.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from typing import Any, NamedTuple
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+import optax
+from numpy.typing import NDArray
+
+from costeer.intention.gru import NetworkWeights
+from costeer.training.dataset import Windows, batches
+from costeer.training.evaluate import judged_samples, sample_scores, verdicts
+from costeer.training.network import (
+    TrainedWeights,
+    initial_weights,
+    logits,
+    network_weights,
+)
+from costeer.training.recordings import Recording
+
+
+class FitParameters(NamedTuple):
+    """How long and how fast to learn.
+
+    Attributes:
+        batch_size: Windows per step [-]. Source: assumed.
+        learning_rate: Of Adam at its highest [-]. Source: assumed; half of it learns
+            slower, twice as much is unsteady.
+        weight_decay: Of Adam [-]. Source: assumed.
+        largest_gradient: Norm at which a gradient is cut [-]. Source: assumed.
+        num_steps: At most; the rate falls to a hundredth along a cosine [-]. Source:
+            assumed.
+        steps_per_check: Between two looks at the validation drivers [-]. Source:
+            assumed.
+        patience: Looks without a better log loss before it stops [-]. Source: assumed.
+    """
+
+    batch_size: int = 256
+    learning_rate: float = 5e-3
+    weight_decay: float = 1e-4
+    largest_gradient: float = 1.0
+    num_steps: int = 3000
+    steps_per_check: int = 250
+    patience: int = 5
+
+
+DEFAULTS = FitParameters()
+
+
+class CurvePoint(NamedTuple):
+    """One look at the validation drivers.
+
+    Attributes:
+        step: Of the training.
+        training_loss: Mean since the last look [nat].
+        validation_log_loss: All samples [nat].
+        validation_pr_auc: All samples [-].
+    """
+
+    step: int
+    training_loss: float
+    validation_log_loss: float
+    validation_pr_auc: float
+
+
+class Fit(NamedTuple):
+    """A fitted network.
+
+    Attributes:
+        weights: The best on the validation drivers.
+        best: Where they stood.
+        curve: All looks.
+    """
+
+    weights: NetworkWeights
+    best: CurvePoint
+    curve: list[CurvePoint]
+
+
+class Scaling(NamedTuple):
+    """Mean and standard deviation of each signal, `(feature,)`."""
+
+    mean: NDArray[np.float64]
+    scale: NDArray[np.float64]
+
+
+def weighted_loss(
+    weights: TrainedWeights, windows: jax.Array, positive: jax.Array, weight: jax.Array
+) -> jax.Array:
+    """Log loss [nat], each window by its weight."""
+    each = optax.sigmoid_binary_cross_entropy(logits(weights, windows), positive)
+    return jnp.sum(weight * each) / jnp.sum(weight)
+
+
+def optimiser(parameters: FitParameters) -> optax.GradientTransformation:
+    """Adam with weight decay, a cut of large gradients and a falling rate."""
+    rate = optax.warmup_cosine_decay_schedule(
+        init_value=0.1 * parameters.learning_rate,
+        peak_value=parameters.learning_rate,
+        warmup_steps=min(100, parameters.num_steps // 10 + 1),
+        decay_steps=max(parameters.num_steps, 2),
+        end_value=0.01 * parameters.learning_rate,
+    )
+    return optax.chain(
+        optax.clip_by_global_norm(parameters.largest_gradient),
+        optax.adamw(rate, weight_decay=parameters.weight_decay),
+    )
+
+
+def descend(
+    weights: TrainedWeights, data: Windows, seed: int, parameters: FitParameters
+) -> Iterator[tuple[TrainedWeights, jax.Array]]:
+    """Weights and loss after each step."""
+    rule = optimiser(parameters)
+    memory = rule.init(weights)
+
+    @jax.jit
+    def update(weights: TrainedWeights, memory: Any, batch: Any) -> Any:
+        loss, slope = jax.value_and_grad(weighted_loss)(weights, *batch)
+        change, memory = rule.update(slope, memory, weights)
+        return optax.apply_updates(weights, change), memory, loss
+
+    for batch in batches(data, parameters.batch_size, seed):
+        weights, memory, loss = update(weights, memory, batch)
+        yield weights, loss
+
+
+def look(
+    weights: NetworkWeights,
+    recordings: Sequence[Recording],
+    step: int,
+    training_loss: float,
+) -> CurvePoint:
+    """Judge weights on whole recordings."""
+    said, truth = judged_samples(verdicts(weights, recordings))
+    scores = sample_scores(said, truth, 0.5)
+    return CurvePoint(
+        step=step,
+        training_loss=training_loss,
+        validation_log_loss=scores["log_loss"],
+        validation_pr_auc=scores["pr_auc"],
+    )
+
+
+def fit(
+    data: Windows,
+    scaling: Scaling,
+    validation: Sequence[Recording],
+    hidden: int,
+    seed: int,
+    parameters: FitParameters = DEFAULTS,
+    progress: Callable[[int], None] | None = None,
+) -> Fit:
+    """Train one network.
+
+    Args:
+        data: Training windows, scaled.
+        scaling: By which they were.
+        validation: Recordings of other drivers.
+        hidden: Size of the hidden state.
+        seed: Of the first weights and the order of the windows.
+        parameters: How long and how fast.
+        progress: Told after each look how many steps were done.
+    """
+    prevalence = float(np.average(data.positive, weights=data.weight))
+    start = initial_weights(hidden, prevalence, seed)
+    curve: list[CurvePoint] = []
+    best: Fit | None = None
+    losses: list[jax.Array] = []
+    for step, (weights, loss) in enumerate(descend(start, data, seed, parameters), 1):
+        losses.append(loss)
+        if step % parameters.steps_per_check and step < parameters.num_steps:
+            continue
+        network = network_weights(weights, *scaling)
+        mean_loss = float(np.mean(jax.device_get(losses)))
+        curve.append(look(network, validation, step, mean_loss))
+        if best is None or _loss(curve[-1]) < _loss(best.best):
+            best = Fit(weights=network, best=curve[-1], curve=curve)
+        if progress:
+            progress(len(losses))
+        losses = []
+        if step >= parameters.num_steps or _stalled(curve, parameters.patience):
+            break
+    assert best is not None  # the first look is always the best so far
+    return best
+
+
+def _loss(point: CurvePoint) -> float:
+    return point.validation_log_loss
+
+
+def _stalled(curve: Sequence[CurvePoint], patience: int) -> bool:
+    """Whether the last looks brought nothing better."""
+    place = int(np.argmin([_loss(point) for point in curve]))
+    return len(curve) - 1 - place >= patience

@@ -1,0 +1,112 @@
+"""Recordings from records and tables, and what is refused."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from costeer.intention.features import FEATURES
+from costeer.loop.record import TrialRecord
+from costeer.training.recordings import read_recordings, recording, recordings_of
+from tests.training.synthetic import columns
+
+
+def changed(**replaced: Any) -> dict[str, Any]:
+    """A drive with some columns replaced, or left out if None."""
+    merged = columns(1) | replaced
+    return {name: values for name, values in merged.items() if values is not None}
+
+
+def test_crossings_follow_from_the_lane() -> None:
+    made = recording("a", "a", columns(1, num_changes=4))
+    assert made.intended[made.intended != 0].tolist() == [-1, 1, -1, 1]
+
+
+def test_a_crossing_column_has_the_word() -> None:
+    crossing = np.zeros(len(columns(1)["time"]), np.int8)
+    crossing[1000] = -1
+    made = recording("a", "a", changed(crossing=crossing))
+    assert np.flatnonzero(made.intended).tolist() == [1000]
+
+
+def test_a_crossing_that_the_driver_did_not_mean_is_no_target_of_triggers() -> None:
+    free = recording("a", "a", columns(1))
+    wish = np.zeros(len(free.side), np.int8)
+    first = int(np.flatnonzero(free.intended)[0])
+    wish[first - 60 : first + 60] = -1
+    made = recording("a", "a", changed(driver_intention=wish))
+    assert np.flatnonzero(made.intended).tolist() == [first]
+    np.testing.assert_array_equal(made.labels.positive, free.labels.positive)
+
+
+def test_people_mean_all_their_crossings() -> None:
+    free = recording("a", "a", columns(1))
+    nulls = np.ma.masked_all(len(free.side), np.int8)
+    made = recording("a", "a", changed(driver_intention=nulls))
+    np.testing.assert_array_equal(made.intended, free.intended)
+
+
+def test_an_untracked_head_makes_the_sample_invalid() -> None:
+    tracked = np.ones(len(columns(1)["time"]), bool)
+    tracked[50:60] = False
+    made = recording("a", "a", changed(head_yaw_valid=tracked))
+    lost = np.flatnonzero(np.isnan(made.features[:, 0]))
+    np.testing.assert_array_equal(lost, np.arange(50, 60))
+
+
+@pytest.mark.parametrize("name", FEATURES)
+def test_a_missing_input_is_named_and_there_is_no_variant_without(name: str) -> None:
+    with pytest.raises(ValueError, match=f"no variant without {name}"):
+        recording("a", "drive.csv", changed(**{name: None}))
+
+
+def test_a_missing_lane_is_named() -> None:
+    with pytest.raises(ValueError, match=r"drive.csv has no column lane"):
+        recording("a", "drive.csv", changed(lane=None))
+
+
+def test_another_rate_is_refused_with_its_step() -> None:
+    thinned = {name: values[::6] for name, values in columns(1).items()}
+    with pytest.raises(ValueError, match=r"0\.1 s lie between rows 0 and 1"):
+        recording("a", "a", thinned)
+
+
+def test_a_gap_is_refused_where_it_is() -> None:
+    time = columns(1)["time"].copy()
+    time[700:] += 0.5
+    with pytest.raises(ValueError, match="between rows 699 and 700"):
+        recording("a", "a", changed(time=time))
+
+
+def table(tmp_path: Path) -> Path:
+    """Two sequences of two participants in one CSV."""
+    parts = []
+    for label, participant in (("x", 7), ("y", 8)):
+        part = pd.DataFrame(columns(participant, num_changes=1))
+        parts.append(part.assign(sequence=label, participant=participant))
+    path = tmp_path / "drives.csv"
+    pd.concat(parts).to_csv(path, index=False)
+    return path
+
+
+def test_sequences_of_a_table_are_separate_stretches(tmp_path: Path) -> None:
+    first, second = read_recordings([table(tmp_path)])
+    assert [first.driver, second.driver] == ["7", "8"]
+    alone = recording("7", "x", columns(7, num_changes=1))
+    np.testing.assert_allclose(first.features, alone.features, rtol=1e-12)
+    np.testing.assert_array_equal(second.intended != 0, second.intended == -1)
+
+
+def test_a_record_knows_its_driver() -> None:
+    record = TrialRecord(metadata={"seed": 5, "participant": 2}, columns=columns(1))
+    (made,) = recordings_of(record, "file")
+    assert made.driver == "5-2"
+
+
+def test_without_sequence_and_participant_the_file_is_the_driver() -> None:
+    (made,) = recordings_of(TrialRecord(metadata={}, columns=columns(1)), "drive.csv")
+    assert made.driver == "drive.csv"
