@@ -24,11 +24,11 @@ COMMA = [
 
 def test_a_foreign_table_is_measured(capsys: pytest.CaptureFixture[str]) -> None:
     assert main([*COMMA, "--scale", "steering_wheel_angle=0.0174533"]) == 0
-    shown = capsys.readouterr().out
+    shown, notes = capsys.readouterr()
     assert "comma2k19.csv: 30.0 s at 82.9" in shown
     assert "swrr" in shown
     assert "not computed: driver_torque_rms: needs the column driver_torque" in shown
-    assert "note: unevenly sampled" in shown
+    assert "comma2k19.csv: unevenly sampled" in notes
 
 
 def test_a_trial_record_shows_its_lane_changes(

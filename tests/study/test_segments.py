@@ -200,4 +200,9 @@ def test_an_excursion_is_interpolated() -> None:
     signal = np.array([0.0, 0.0, 2.0, 4.0, 2.0, 0.0, 0.0])
     assert excursion(time, signal, 1.0, 3.0) == (1.5, 4.5)
     assert excursion(time, signal, 1.0, 0.5) is None
+    # Between a sample below the threshold and one above it: on either side of it.
+    assert excursion(time, signal, 1.0, 1.4) is None
+    assert excursion(time, signal, 1.0, 1.6) == (1.5, 4.5)
+    assert excursion(time, signal, 1.0, 4.4) == (1.5, 4.5)
+    assert excursion(time, signal, 1.0, 4.6) is None
     assert excursion(time, signal - WIDTH, -9.0, 3.0) == (-inf, inf)

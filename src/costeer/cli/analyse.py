@@ -120,7 +120,7 @@ def show_json(analyses: list[Analysis]) -> None:
 
 def show_tables(analyses: list[Analysis]) -> None:
     """Print a table of measures for each stretch, then what could not be computed."""
-    from costeer.cli.console import print_table
+    from costeer.cli.console import note, print_table
 
     for each in analyses:
         measured = {k: m for k, m in each.measures.items() if not m.reason}
@@ -128,15 +128,22 @@ def show_tables(analyses: list[Analysis]) -> None:
         typer.echo(_title(each))
         print_table(["measure", "value", "unit"], rows)
         _show_lane_changes(each)
-        for line in (*_not_computed(each), *(f"note: {n}" for n in each.notes)):
+        for line in _not_computed(each):
             typer.echo(line)
+        for line in each.notes:
+            note(f"note on {_name(each)}: {line}")
         typer.echo()
 
 
 def _title(each: Analysis) -> str:
-    name = f"{each.source}, sequence {each.sequence}" if each.sequence else each.source
     seconds = each.num_rows / each.sampling.rate
-    return f"{name}: {seconds:.1f} s at {each.sampling.rate:.4g} Hz"
+    return f"{_name(each)}: {seconds:.1f} s at {each.sampling.rate:.4g} Hz"
+
+
+def _name(each: Analysis) -> str:
+    if not each.sequence:
+        return each.source
+    return f"{each.source}, sequence {each.sequence}"
 
 
 # Short headings, so that the table fits a terminal 80 characters wide.

@@ -80,11 +80,10 @@ def excursion(
         Start and end; -inf or inf where the record begins or stops before. None if
         the signal does not exceed the threshold at the instant.
     """
-    below = np.flatnonzero(signal <= threshold)
-    after = int(np.searchsorted(time, instant, side="left"))
-    if signal[max(after - 1, 0)] <= threshold or signal[after] <= threshold:
+    if np.interp(instant, time, signal) <= threshold:
         return None
-    place = int(np.searchsorted(below, after))
+    below = np.flatnonzero(signal <= threshold)
+    place = int(np.searchsorted(below, np.searchsorted(time, instant)))
     start, end = -inf, inf
     if place > 0:
         start = _instant(time, signal, int(below[place - 1]), threshold)
