@@ -99,10 +99,9 @@ def tick(
     script: Script,
     weights: WavefrontWeights,
     memory: WavefrontState,
-    noise_row: NDArray[np.float64],
+    noise: DriverNoise,
 ) -> tuple[LoopState, Row]:
     """One control step with its sample, its verdict and its row."""
-    noise = unpack(_NOISE, noise_row)
     measurement = sense(parameters, state, noise)
     probability = math.nan
     if script.intention == INTENTION_SCRIPTED:
@@ -135,7 +134,8 @@ def run(
     """
     state = initial_state(parameters)
     for k in range(len(noise)):
-        state, filled = tick(parameters, state, script, weights, memory, noise[k])
+        drawn = unpack(_NOISE, noise[k])
+        state, filled = tick(parameters, state, script, weights, memory, drawn)
         pack(rows[k], filled)
         if state.world.vehicle.longitudinal_position >= parameters.road.length:
             return k + 1
@@ -171,14 +171,19 @@ def rollout(
         weights: Of the network.
         memory: Of the network, changed in place.
         noise: Random numbers, shape `(time, draw)`.
-        engine: "numba" or "python".
+        engine: "numba", "python" or "jax"; JAX runs no network.
 
     Returns:
         Rows in the order of `ROW_COLUMNS`, shape `(time, column)`.
 
     Raises:
-        ValueError: If the engine is not known.
+        ValueError: If the engine is not known, or JAX is asked for the network.
+        ModuleNotFoundError: If the engine is not installed.
     """
+    if engine == "jax":
+        from costeer.loop.jax_rollout import jax_rollout
+
+        return jax_rollout(parameters, script, noise)
     rows = np.empty((len(noise), len(ROW_COLUMNS)))
     if engine == "numba":
         given = packed(parameters)
@@ -186,5 +191,5 @@ def rollout(
     elif engine == "python":
         count = run(parameters, script, weights, memory, noise, rows)
     else:
-        raise ValueError(f"engine '{engine}' is not known; choose numba or python")
+        raise ValueError(f"engine '{engine}' is not known; choose numba, python or jax")
     return rows[:count]
