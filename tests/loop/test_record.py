@@ -14,7 +14,6 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as npst
-from tests.study.synthetic import synthetic_record
 
 from costeer.loop.record import (
     COLUMNS,
@@ -26,6 +25,7 @@ from costeer.loop.record import (
     read_recording,
     write_record,
 )
+from tests.study.synthetic import synthetic_record
 
 
 @pytest.fixture(scope="module")
