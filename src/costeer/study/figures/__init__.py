@@ -1,0 +1,1 @@
+"""The figures of a study, one file per kind, in one style."""

@@ -1,0 +1,52 @@
+"""All figures of a study in the order of the report."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from costeer.study.conditions import STRENGTHS
+from costeer.study.figures import (
+    bars,
+    detection,
+    gain,
+    inconsistency,
+    signals,
+    trajectories,
+    workload,
+)
+from costeer.study.figures.episodes import exemplary_inconsistency
+from costeer.study.figures.exhibit import Exhibit
+from costeer.study.material import StudyMaterial, replan_gain
+from costeer.study.quantities import QUANTITIES, WORKLOAD
+
+FIGURE_NAMES: tuple[str, ...] = (
+    *(bars.file_name(each) for each in (*QUANTITIES, *WORKLOAD)),
+    trajectories.NAME,
+    detection.NAME,
+    *(signals.file_name(each) for each in STRENGTHS),
+    inconsistency.NAME,
+    gain.NAME,
+)
+"""Stems of all files in `figures/`."""
+
+
+def draw_figures(material: StudyMaterial) -> Iterator[Exhibit]:
+    """Draw one figure after the other; call it inside `styled`.
+
+    Args:
+        material: The study.
+
+    Yields:
+        Every figure there is, also those for which the study lacks something.
+    """
+    gain_limit = replan_gain(material)
+    episode = exemplary_inconsistency(material.records, gain_limit)
+    for quantity in QUANTITIES:
+        yield bars.draw(material, quantity)
+    yield trajectories.draw(material)
+    yield from workload.draw(material)
+    yield detection.draw(material)
+    for strength in STRENGTHS:
+        yield signals.draw(material, strength)
+    yield inconsistency.draw(episode)
+    yield gain.draw(episode, gain_limit)

@@ -1,0 +1,205 @@
+"""Signals of one participant around one lane change, manual beside assisted."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.lines import Line2D
+from numpy.typing import NDArray
+
+from costeer.loop.record import read_record
+from costeer.study.conditions import MANUAL, condition
+from costeer.study.crossings import RIGHT
+from costeer.study.figures.episodes import falls, rises
+from costeer.study.figures.exhibit import Exhibit, not_drawn
+from costeer.study.figures.style import (
+    FAINT,
+    FULL_WIDTH_MM,
+    SHADE,
+    STRENGTH_COLOURS,
+    Margins,
+    condition_colour,
+    new_figure,
+    panels,
+)
+from costeer.study.material import LANE_LINE, LANE_TICKS, StudyMaterial
+from costeer.study.quantities import DEG
+
+_BEFORE, _AFTER = 8.0, 8.0
+"""Shown around the crossing [s]. Source: assumed; the longest planned change is 8 s."""
+
+_EVERY = 2
+"""Rows drawn, one of so many: 30 Hz is finer than a line is wide."""
+
+
+class Signal(NamedTuple):
+    """One row of panels: a column of the record, its label, shown value per unit."""
+
+    column: str
+    label: str
+    factor: float = 1.0
+
+
+SIGNALS = (
+    Signal("lateral_position", "Lateral\nposition [m]"),
+    Signal("steering_wheel_angle", "Steering wheel\nangle [deg]", DEG),
+    Signal("driver_torque", "Driver\ntorque [N·m]"),
+    Signal("applied_torque", "Guidance\ntorque [N·m]"),
+    Signal("haptic_gain", "Haptic gain\n$K_h$ [–]"),
+    Signal("head_yaw", "Head yaw\n[–]"),
+    Signal("crossing_probability", "Crossing\nprobability [–]"),
+)
+_ONLY_ASSISTED = ("applied_torque", "haptic_gain")
+_UNIT_RANGE = ("haptic_gain", "crossing_probability")
+
+
+class Moment(NamedTuple):
+    """One lane change of one trial: time since the crossing [s], and the columns."""
+
+    time: NDArray[np.float64]
+    columns: dict[str, NDArray[Any]]  # of several element types
+
+
+def file_name(strength: str) -> str:
+    """Return the stem of the figure's file."""
+    return f"signals-{strength}"
+
+
+def draw(material: StudyMaterial, strength: str) -> Exhibit:
+    """Draw the conditions of one strength, with manual in grey behind each."""
+    name, title = file_name(strength), f"Signals of one participant, {strength}"
+    participant = _most_complete(material, strength)
+    moments = {} if participant is None else _moments(material, participant, strength)
+    assisted = [key for key in moments if key != MANUAL]
+    if participant is None or not assisted:
+        lacking = f"No trial with {strength} guidance holds a lane change to the right."
+        return not_drawn(name, title, lacking)
+    figure = new_figure(FULL_WIDTH_MM, 178.0)
+    margins = Margins(left=18.0, top=10.0, bottom=10.0, between_columns=5.0)
+    grid = panels(figure, len(SIGNALS), len(assisted), margins)
+    for column, key in enumerate(assisted):
+        axes = [row[column] for row in grid]
+        _draw_column(axes, key, moments[key], moments.get(MANUAL))
+    for signal, row in zip(SIGNALS, grid, strict=True):
+        _share_range(row, signal)
+    figure.align_ylabels([row[0] for row in grid])
+    handles = _legend(strength, MANUAL in moments)
+    figure.legend(handles=handles, ncols=len(handles), loc="upper right")
+    caption = _caption(participant, strength, MANUAL in moments)
+    return Exhibit(name, title, caption, _description(participant, strength), figure)
+
+
+def _caption(participant: int, strength: str, with_manual: bool) -> str:
+    manual = (
+        "Grey: the same participant's manual drive. "
+        if with_manual
+        else "This participant has no manual trial to compare with. "
+    )
+    return (
+        f"Participant {participant}, the first lane change to the right of each trial "
+        f"with {strength} guidance; time from the crossing of the lane line. {manual}"
+        "Shaded: mode lane changing. Guidance torque is what the motor gives. Left is "
+        "positive; lateral position is measured from the left lane's centre, dashed is "
+        "the line between the lanes. Chosen by rule: the first participant with the "
+        "most conditions driven."
+    )
+
+
+def _description(participant: int, strength: str) -> str:
+    return (
+        f"Seven signals of participant {participant} against time, a column of panels "
+        f"for each duration of {strength} guidance, each over the manual drive."
+    )
+
+
+def _most_complete(material: StudyMaterial, strength: str) -> int | None:
+    """First participant with the most trials of this strength and manual."""
+    wanted = (strength, MANUAL)
+    keys = [key for key in material.records if condition(key[1]).strength in wanted]
+    counts = {each: sum(key[0] == each for key in keys) for each, _ in keys}
+    return max(counts, key=lambda each: (counts[each], -each), default=None)
+
+
+def _moments(
+    material: StudyMaterial, participant: int, strength: str
+) -> dict[str, Moment]:
+    """The first lane change to the right of each trial of this strength and manual."""
+    changes = material.lane_changes
+    chosen = changes[
+        (changes["participant"] == participant) & (changes["direction"] == RIGHT)
+    ]
+    crossings = chosen.groupby("condition")["crossing_time"].min()
+    return {
+        key: _moment(path, float(crossings[key]))
+        for (who, key), path in material.records.items()
+        if who == participant
+        and condition(key).strength in (strength, MANUAL)
+        and key in crossings.index
+    }
+
+
+def _moment(path: Path, crossing: float) -> Moment:
+    names = [signal.column for signal in SIGNALS]
+    record = read_record(path, [*names, "mode"])
+    time = record.columns["time"] - crossing
+    shown = (time >= -_BEFORE) & (time <= _AFTER)
+    columns = {name: values[shown][::_EVERY] for name, values in record.columns.items()}
+    return Moment(time=time[shown][::_EVERY], columns=columns)
+
+
+def _draw_column(
+    axes: list[Axes], key: str, assisted: Moment, manual: Moment | None
+) -> None:
+    changing = assisted.columns["mode"] == "lane_changing"
+    for panel, signal in zip(axes, SIGNALS, strict=True):
+        _shade(panel, assisted.time, changing)
+        if manual is not None and signal.column not in _ONLY_ASSISTED:
+            _line(panel, manual, signal, STRENGTH_COLOURS[MANUAL])
+        _line(panel, assisted, signal, condition_colour(key))
+        panel.axvline(0.0, color=FAINT, linewidth=0.5, zorder=0)
+        panel.set_xlim(-_BEFORE, _AFTER)
+        panel.set_xticks([-8, -4, 0, 4, 8])
+        panel.tick_params(labelbottom=panel is axes[-1])
+    chosen = condition(key)
+    axes[0].set_title(f"{chosen.duration} ({chosen.change_duration:g} s)")
+    axes[-1].set_xlabel("Time from crossing [s]")
+
+
+def _line(panel: Axes, moment: Moment, signal: Signal, colour: str) -> None:
+    values = moment.columns[signal.column] * signal.factor
+    panel.plot(moment.time, values, color=colour)
+
+
+def _shade(panel: Axes, time: NDArray[np.float64], changing: NDArray[np.bool_]) -> None:
+    for start, end in zip(rises(changing), falls(changing), strict=True):
+        panel.axvspan(time[start], time[end], facecolor=SHADE, linewidth=0, zorder=-1)
+
+
+def _share_range(row: list[Axes], signal: Signal) -> None:
+    """Give the panels of a row one range, and only the first its label and numbers."""
+    if signal.column in _UNIT_RANGE:
+        low, high = -0.03, 1.06
+        row[0].set_yticks([0.0, 0.5, 1.0])
+    else:
+        if signal.column == "lateral_position":
+            row[0].set_yticks(LANE_TICKS)
+        low = min(panel.get_ylim()[0] for panel in row)
+        high = max(panel.get_ylim()[1] for panel in row)
+    for panel in row:
+        panel.set_yticks(row[0].get_yticks())
+        panel.set_ylim(low, high)
+        panel.tick_params(labelleft=panel is row[0])
+        if signal.column == "lateral_position":
+            panel.axhline(LANE_LINE, color=FAINT, linewidth=0.7, linestyle=(0, (6, 4)))
+    row[0].set_ylabel(signal.label)
+
+
+def _legend(strength: str, with_manual: bool) -> list[Line2D]:
+    manual = [Line2D([], [], color=STRENGTH_COLOURS[MANUAL], label=MANUAL)]
+    assisted = Line2D(
+        [], [], color=STRENGTH_COLOURS[strength], label=f"{strength} guidance"
+    )
+    return (manual if with_manual else []) + [assisted]

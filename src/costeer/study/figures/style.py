@@ -1,0 +1,228 @@
+"""One look for every figure: sizes, colours, type, and how an SVG is written.
+
+Colours are those of Okabe and Ito, which people with colour-vision deficiency tell
+apart. Strength is a hue, duration a shade of it; manual driving is grey everywhere.
+"""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from typing import Any, NamedTuple
+
+import matplotlib as mpl
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_svg import FigureCanvasSVG
+from matplotlib.figure import Figure
+
+from costeer.study.conditions import condition
+
+COLUMN_WIDTH_MM = 88.0
+FULL_WIDTH_MM = 180.0
+"""Widths of one and of two columns of a journal page [mm]."""
+
+MM_PER_INCH = 25.4
+SMALL, NORMAL = 6.5, 7.5
+"""Sizes of type [pt]."""
+
+INK = "#1a1a1a"
+FAINT = "#8c8c8c"
+RULE = "#d0d0d0"
+SHADE = "#ececec"
+
+STRENGTH_COLOURS = {"manual": "#5f5f5f", "strong": "#0072B2", "weak": "#D55E00"}
+STRENGTH_LINES: dict[str, tuple[float, tuple[float, ...]]] = {
+    "manual": (0.0, ()),
+    "strong": (0.0, ()),
+    "weak": (0.0, (4.0, 1.5)),
+}
+"""Offset and dashes: weak is told from strong without colour too."""
+
+_DURATION_SHADES = {
+    "strong": {"rapid": "#00456B", "normal": "#0072B2", "gentle": "#62B0DE"},
+    "weak": {"rapid": "#8C3B00", "normal": "#D55E00", "gentle": "#F4A06A"},
+}
+SIGNAL_COLOURS = {"driver": "#009E73", "guidance": "#CC79A7", "gap": "#1a1a1a"}
+"""Two agents at one wheel, distinct from the colours of the conditions."""
+
+_RC: dict[Any, Any] = {  # Any: matplotlib's keys are one long Literal
+    "font.family": ["DejaVu Sans"],
+    "font.size": NORMAL,
+    "axes.titlesize": NORMAL,
+    "axes.labelsize": NORMAL,
+    "axes.titleweight": "regular",
+    "axes.titlelocation": "left",
+    "axes.titlepad": 3.0,
+    "axes.labelpad": 2.5,
+    "axes.linewidth": 0.6,
+    "axes.edgecolor": INK,
+    "axes.labelcolor": INK,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.unicode_minus": True,
+    "axes.xmargin": 0.0,
+    "xtick.labelsize": SMALL,
+    "ytick.labelsize": SMALL,
+    "xtick.color": INK,
+    "ytick.color": INK,
+    "xtick.major.width": 0.6,
+    "ytick.major.width": 0.6,
+    "xtick.major.size": 2.2,
+    "ytick.major.size": 2.2,
+    "xtick.major.pad": 2.0,
+    "ytick.major.pad": 2.0,
+    "lines.linewidth": 1.0,
+    "legend.fontsize": SMALL,
+    "legend.frameon": False,
+    "legend.handlelength": 1.6,
+    "legend.borderaxespad": 0.2,
+    "text.color": INK,
+    "mathtext.fontset": "dejavusans",
+    "svg.fonttype": "path",
+    "path.simplify": True,
+}
+
+
+class Margins(NamedTuple):
+    """White space of a grid of panels [mm]: around it and between its panels."""
+
+    left: float = 12.0
+    right: float = 2.0
+    top: float = 5.0
+    bottom: float = 9.0
+    between_columns: float = 6.0
+    between_rows: float = 4.0
+
+
+@contextmanager
+def styled() -> Iterator[None]:
+    """Apply the style; draw and write a figure inside."""
+    with mpl.rc_context():
+        mpl.rcdefaults()
+        mpl.rcParams.update(_RC)
+        yield
+
+
+def new_figure(width_mm: float, height_mm: float) -> Figure:
+    """Return an empty figure of that size on a white ground."""
+    size = (width_mm / MM_PER_INCH, height_mm / MM_PER_INCH)
+    figure = Figure(figsize=size, facecolor="white")
+    FigureCanvasSVG(figure)
+    return figure
+
+
+def panels(
+    figure: Figure,
+    rows: int,
+    columns: int,
+    margins: Margins,
+    column_widths: Sequence[float] | None = None,
+    row_heights: Sequence[float] | None = None,
+) -> list[list[Axes]]:
+    """Return a grid of panels placed to the millimetre.
+
+    Args:
+        figure: Figure to divide.
+        rows: Number of rows.
+        columns: Number of columns.
+        margins: White space [mm].
+        column_widths: Shares of the width, equal if None.
+        row_heights: Shares of the height, equal if None.
+    """
+    width, height = (float(size) * MM_PER_INCH for size in figure.get_size_inches())
+    inner_width = width - margins.left - margins.right
+    inner_height = height - margins.top - margins.bottom
+    grid = figure.add_gridspec(
+        rows,
+        columns,
+        left=margins.left / width,
+        right=1.0 - margins.right / width,
+        top=1.0 - margins.top / height,
+        bottom=margins.bottom / height,
+        wspace=_relative(margins.between_columns, inner_width, columns),
+        hspace=_relative(margins.between_rows, inner_height, rows),
+        width_ratios=column_widths,
+        height_ratios=row_heights,
+    )
+    return [
+        [figure.add_subplot(grid[row, column]) for column in range(columns)]
+        for row in range(rows)
+    ]
+
+
+def _relative(gap: float, inner: float, number: int) -> float:
+    """The gap as a share of the mean panel, which is what the grid wants."""
+    return gap * number / (inner - gap * (number - 1))
+
+
+def condition_colour(name: str) -> str:
+    """Return the colour of a condition, the same in every figure."""
+    strength, duration = condition(name).strength, condition(name).duration
+    if not duration:
+        return STRENGTH_COLOURS[strength]
+    return _DURATION_SHADES[strength][duration]
+
+
+def panel_letter(axes: Axes, letter: str) -> None:
+    """Put a bold letter above the upper left corner of a panel's labels."""
+    axes.annotate(
+        letter,
+        xy=(0.0, 1.0),
+        xycoords="axes fraction",
+        xytext=(-26.0, 5.0),
+        textcoords="offset points",
+        fontsize=NORMAL + 0.5,
+        fontweight="bold",
+        ha="left",
+        va="bottom",
+    )
+
+
+def interval_bar(
+    axes: Axes,
+    at: tuple[float, float],
+    vertical: bool,
+    lower: float,
+    upper: float,
+) -> None:
+    """Draw an interval in ink on a white edge, so that it stands out on any bar.
+
+    Args:
+        axes: Panel.
+        at: Place of the mean.
+        vertical: Whether it extends along y, else along x.
+        lower: Length below the mean.
+        upper: Length above the mean.
+    """
+    length = [[lower], [upper]]
+    for colour, width in (("white", 1.9), (INK, 0.9)):
+        axes.errorbar(
+            *at,
+            yerr=length if vertical else None,
+            xerr=None if vertical else length,
+            fmt="none",
+            ecolor=colour,
+            capsize=2.0,
+            capthick=width,
+            elinewidth=width,
+            zorder=3.0,
+        )
+
+
+def svg_text(figure: Figure, name: str, title: str) -> str:
+    """Return a figure as SVG; the same figure gives the same text.
+
+    Args:
+        figure: Drawn inside `styled`.
+        name: Salt of the ids inside.
+        title: Text for those who do not see the figure.
+    """
+    text = io.StringIO()
+    with mpl.rc_context({"svg.hashsalt": name}):
+        figure.savefig(
+            text,
+            format="svg",
+            metadata={"Date": None, "Creator": None, "Title": title},
+        )
+    return text.getvalue()

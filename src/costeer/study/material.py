@@ -1,0 +1,181 @@
+"""What a study folder holds, gathered for its figures and its report.
+
+Only files are read: a study with people and one with virtual drivers look the same
+from here, and a study that is not finished is one with fewer rows.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from costeer.controller.replanning import ReplanningParameters
+from costeer.loop.record import read_record
+from costeer.study.conditions import CONDITION_NAMES
+from costeer.study.folder import RECORDS, StudyFolder, read_study
+from costeer.study.outcome import WITHIN, PairRow, StudyTests, SummaryRow
+from costeer.study.quantities import WORKLOAD, Quantity
+from costeer.study.statistics import MEASURES, Measure, study_tests
+from costeer.study.trial_tables import LANE_CHANGES_FILE, TRIALS_FILE
+
+LANE_LINE = -1.75
+"""Lateral position of the line between the lanes [m]: half a lane width, to the right
+of the left lane's centre."""
+
+LANE_TICKS = (-3.5, -1.75, 0.0)
+"""Right lane's centre, line between the lanes, left lane's centre [m]."""
+
+_RECORD_NAME = re.compile(r"(\d+)-([a-z]+(?:-[a-z]+)?)\.parquet")
+
+
+class StudyMaterial(NamedTuple):
+    """One study folder in memory, records left on disk.
+
+    Attributes:
+        study: The folder and its configuration.
+        trials: Rows of `trials.csv`.
+        lane_changes: Rows of `lane_changes.csv`.
+        tests: Tests, pairs, summaries and what was dropped.
+        records: Path of each trial record by participant and condition.
+        metadata: What each of them says of itself, in the same order.
+    """
+
+    study: StudyFolder
+    trials: pd.DataFrame
+    lane_changes: pd.DataFrame
+    tests: StudyTests
+    records: dict[tuple[int, str], Path]
+    metadata: tuple[dict[str, object], ...]
+
+
+def read_material(folder: Path) -> StudyMaterial:
+    """Read the tables of a study, test them, and find its records.
+
+    Raises:
+        ValueError: If the folder is no study, or a table is missing or unreadable.
+    """
+    study = read_study(folder)
+    trials = _read_table(folder / TRIALS_FILE)
+    lane_changes = _read_table(folder / LANE_CHANGES_FILE)
+    records = find_records(folder)
+    return StudyMaterial(
+        study=study,
+        trials=trials,
+        lane_changes=lane_changes,
+        tests=study_tests(trials, lane_changes, (*MEASURES, *_workload(trials))),
+        records=records,
+        metadata=tuple(read_record(path, ()).metadata for path in records.values()),
+    )
+
+
+def _workload(trials: pd.DataFrame) -> list[Measure]:
+    """The scores of the NASA-TLX that somebody gave."""
+    names = [each.name for each in WORKLOAD]
+    given = [name for name in names if name in trials and trials[name].notna().any()]
+    return [Measure(name) for name in given]
+
+
+def _read_table(file: Path) -> pd.DataFrame:
+    try:
+        return pd.read_csv(file, float_precision="round_trip")
+    except FileNotFoundError:
+        raise ValueError(
+            f"{file.parent} has no {file.name}: not one trial of this study is "
+            "finished; run it first"
+        ) from None
+    except pd.errors.EmptyDataError:
+        return pd.DataFrame()
+    except (pd.errors.ParserError, UnicodeDecodeError):
+        raise ValueError(
+            f"{file} is not a table of a study; delete it and run the study again"
+        ) from None
+
+
+def find_records(folder: Path) -> dict[tuple[int, str], Path]:
+    """Return the trial records by participant and condition, in their order."""
+    found = {}
+    for path in (folder / RECORDS).glob("*.parquet"):
+        match = _RECORD_NAME.fullmatch(path.name)
+        if match and match[2] in CONDITION_NAMES:
+            found[int(match[1]), match[2]] = path
+    place = {name: index for index, name in enumerate(CONDITION_NAMES)}
+    return dict(sorted(found.items(), key=lambda item: (item[0][0], place[item[0][1]])))
+
+
+def conditions_driven(material: StudyMaterial) -> tuple[str, ...]:
+    """Return the conditions of which there is a trial, in the order of Table IV."""
+    driven = set(material.trials["condition"])
+    return tuple(name for name in CONDITION_NAMES if name in driven)
+
+
+def strengths_driven(material: StudyMaterial) -> tuple[str, ...]:
+    """Return the strengths of which there is a trial: manual, strong, weak."""
+    driven = set(material.trials["strength"])
+    return tuple(name for name in ("manual", "strong", "weak") if name in driven)
+
+
+def is_virtual(material: StudyMaterial) -> bool:
+    """Whether virtual drivers held the wheel, not people."""
+    return any(each["driver"] == "virtual" for each in material.metadata)
+
+
+def replan_gain(material: StudyMaterial) -> float:
+    """Return the gain below which the system planned anew [-]."""
+    for each in material.metadata:
+        value = each["replan_gain"]
+        if isinstance(value, int | float):
+            return float(value)
+    return float(ReplanningParameters().replan_gain)
+
+
+def participant_means(
+    material: StudyMaterial, quantity: Quantity, factor: str
+) -> dict[str, NDArray[np.float64]]:
+    """Return each participant's mean per level of a factor, in shown units.
+
+    Args:
+        material: The study.
+        quantity: What to average.
+        factor: `condition` or `strength`.
+
+    Returns:
+        By level, one value per participant who has one, participants in order.
+    """
+    table: pd.DataFrame = getattr(material, quantity.table)
+    if quantity.name not in table:
+        return {}
+    means = table.groupby([factor, "participant"])[quantity.name].mean().dropna()
+    return {
+        str(level): values.to_numpy(np.float64) * quantity.factor
+        for level, values in means.groupby(level=0)
+    }
+
+
+def summary(
+    material: StudyMaterial, measure: str, factor: str, level: str
+) -> SummaryRow | None:
+    """Return mean and interval of a measure over participants' means."""
+    wanted = (measure, WITHIN, factor, level)
+    rows = material.tests.summaries
+    return next((row for row in rows if row[:4] == wanted), None)
+
+
+def pair(
+    material: StudyMaterial, measure: str, analysis: str, first: str, second: str
+) -> PairRow | None:
+    """Return the comparison of two levels under an analysis."""
+    wanted = (measure, analysis, first, second)
+    return next((row for row in material.tests.pairs if row[:4] == wanted), None)
+
+
+def mark_of(row: PairRow | None) -> str:
+    """Return the mark of a comparison: `n.s.` without, a dash if it was not made."""
+    if row is None or not math.isfinite(row.p_corrected):
+        return "–"
+    return row.mark or "n.s."

@@ -1,0 +1,107 @@
+"""Tests, figures and `report.html` of a study folder, made from its records."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import NamedTuple
+
+from costeer.study.figures.catalogue import FIGURE_NAMES, draw_figures
+from costeer.study.figures.exhibit import Exhibit
+from costeer.study.figures.style import COLUMN_WIDTH_MM, MM_PER_INCH, styled, svg_text
+from costeer.study.folder import write_text
+from costeer.study.material import StudyMaterial, read_material
+from costeer.study.outcome import DroppedRow, EffectRow, PairRow, SummaryRow
+from costeer.study.reporting.page import render
+from costeer.study.reporting.sections import Picture
+from costeer.study.trial_tables import write_csv
+
+FIGURES = "figures"
+REPORT_FILE = "report.html"
+
+
+class StatisticsFile(NamedTuple):
+    """A table of the statistics: name of the file, columns, and where its rows are."""
+
+    name: str
+    columns: tuple[str, ...]
+    rows: str
+
+
+STATISTICS_FILES = (
+    StatisticsFile("tests.csv", EffectRow._fields, "tests"),
+    StatisticsFile("pairs.csv", PairRow._fields, "pairs"),
+    StatisticsFile("summaries.csv", SummaryRow._fields, "summaries"),
+    StatisticsFile("dropped.csv", DroppedRow._fields, "dropped"),
+)
+
+
+def write_report(
+    folder: Path | str, progress: Callable[[str], None] | None = None
+) -> Path:
+    """Write `tests.csv`, `pairs.csv`, `figures/` and `report.html` of a study.
+
+    The folder holds `study.yaml`, `trials.csv`, `lane_changes.csv` and `records/`;
+    of people or of virtual drivers, finished or not. The same folder gives the same
+    bytes.
+
+    Args:
+        folder: Of the study.
+        progress: Called with a few words before each step.
+
+    Returns:
+        Path of `report.html`.
+
+    Raises:
+        ValueError: If the folder is no study, or a table or record cannot be read.
+        OSError: If a file cannot be written.
+    """
+    tell = progress or _say_nothing
+    path = Path(folder)
+    tell("tests")
+    material = read_material(path)
+    _write_statistics(path, material)
+    pictures = _write_figures(path / FIGURES, material, tell)
+    tell("report")
+    write_text(path / REPORT_FILE, render(material, pictures))
+    return path / REPORT_FILE
+
+
+def _say_nothing(_: str) -> None:
+    """Show no progress."""
+
+
+def _write_statistics(folder: Path, material: StudyMaterial) -> None:
+    for file in STATISTICS_FILES:
+        rows = [row._asdict() for row in getattr(material.tests, file.rows)]
+        write_csv(folder / file.name, rows, file.columns)
+
+
+def _write_figures(
+    folder: Path, material: StudyMaterial, tell: Callable[[str], None]
+) -> Sequence[Picture]:
+    """Write every figure that can be drawn, and remove those that no longer can."""
+    folder.mkdir(exist_ok=True)
+    pictures = []
+    with styled():
+        for exhibit in draw_figures(material):
+            tell(f"figure {exhibit.name}")
+            pictures.append(_picture(exhibit))
+    for picture in pictures:
+        if picture.svg:
+            write_text(folder / f"{picture.exhibit.name}.svg", picture.svg)
+    drawn = {each.exhibit.name for each in pictures if each.svg}
+    for name in FIGURE_NAMES:
+        if name not in drawn:
+            (folder / f"{name}.svg").unlink(missing_ok=True)
+    return pictures
+
+
+def _picture(exhibit: Exhibit) -> Picture:
+    """The figure as text; the drawing itself is let go, it is large."""
+    if exhibit.figure is None:
+        return Picture(exhibit, "", half=False)
+    svg = svg_text(exhibit.figure, exhibit.name, exhibit.title)
+    width_mm = float(exhibit.figure.get_figwidth()) * MM_PER_INCH
+    words = exhibit._replace(figure=None)
+    return Picture(words, svg, half=width_mm <= COLUMN_WIDTH_MM + 1.0)

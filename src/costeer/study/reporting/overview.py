@@ -1,0 +1,230 @@
+"""What was run and how it went: trials, lane changes, triggers, inconsistencies."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import pandas as pd
+
+from costeer.plant.traffic import TrafficParameters
+from costeer.study.conditions import CONDITION_NAMES
+from costeer.study.material import (
+    StudyMaterial,
+    conditions_driven,
+    is_virtual,
+    strengths_driven,
+)
+from costeer.study.reporting.numerals import listed, number, percent, plural
+
+CHANGES_PER_EVENT = 2
+"""One to the right, one back to the left. Source: the paper, Sec. III-B."""
+
+
+class Tally(NamedTuple):
+    """Lane changes of one condition, or of the study.
+
+    Attributes:
+        name: Of the condition.
+        trials: Trials driven.
+        planned: Lane changes planned in them.
+        completed: Lane changes completed.
+        dropped: Crossings that make no lane change; reasons in `trials.csv`.
+    """
+
+    name: str
+    trials: int
+    planned: int
+    completed: int
+    dropped: int
+
+
+def planned_changes(length: float) -> int:
+    """Return the lane changes planned on a course of that length [m]."""
+    traffic = TrafficParameters()
+    places = [
+        traffic.first_event + number * traffic.event_spacing
+        for number in range(int(traffic.num_events))
+    ]
+    return CHANGES_PER_EVENT * sum(place < length for place in places)
+
+
+def tallies(material: StudyMaterial) -> list[Tally]:
+    """Return the lane changes planned, completed and dropped per condition."""
+    planned = planned_changes(_course(material))
+    trials = material.trials.groupby("condition")
+    return [
+        Tally(
+            name=name,
+            trials=len(rows),
+            planned=planned * len(rows),
+            completed=int(rows["num_lane_changes"].sum()),
+            dropped=int(rows["num_dropped_changes"].sum()),
+        )
+        for name in conditions_driven(material)
+        for rows in [trials.get_group(name)]
+    ]
+
+
+def total(parts: list[Tally]) -> Tally:
+    """Return the sum over conditions."""
+    return Tally(
+        name="all",
+        trials=sum(each.trials for each in parts),
+        planned=sum(each.planned for each in parts),
+        completed=sum(each.completed for each in parts),
+        dropped=sum(each.dropped for each in parts),
+    )
+
+
+def _course(material: StudyMaterial) -> float:
+    """Length of the course [m]."""
+    length = material.study.configuration.get("length", math.nan)
+    return float(length)
+
+
+def run_sentences(material: StudyMaterial) -> list[str]:
+    """Say who drove what, how much of it is there, and how the intention was read."""
+    sentences = [_drivers_sentence(material), _trials_sentence(material)]
+    sentences += [_changes_sentence(material), _method_sentence(material)]
+    return sentences
+
+
+def drivers(material: StudyMaterial, amount: int) -> str:
+    """Return `12 virtual drivers` or `12 participants`."""
+    return plural(amount, "virtual driver" if is_virtual(material) else "participant")
+
+
+def _drivers_sentence(material: StudyMaterial) -> str:
+    names = conditions_driven(material)
+    amount = int(material.trials["participant"].nunique())
+    configuration = material.study.configuration
+    speed = float(configuration.get("speed", math.nan)) * 3.6
+    kilometres = _course(material) / 1000.0
+    conditions = "all seven" if len(names) == len(CONDITION_NAMES) else listed(names)
+    noun = "condition" if len(names) == 1 else "conditions"
+    return (
+        f"{drivers(material, amount)} drove {conditions} {noun}, each a course of "
+        f"{number(kilometres, 1)} km at a suggested {number(speed, 0)} km/h."
+    )
+
+
+def _trials_sentence(material: StudyMaterial) -> str:
+    configuration = material.study.configuration
+    wanted = int(configuration.get("participants", 0)) * len(
+        configuration.get("conditions", ())
+    )
+    there = len(material.trials)
+    if there >= wanted:
+        return f"All {plural(there, 'trial')} are there."
+    return f"The study is not complete: {there} of {plural(wanted, 'trial')} are there."
+
+
+def _changes_sentence(material: StudyMaterial) -> str:
+    parts = tallies(material)
+    whole = total(parts)
+    if whole.planned == 0:
+        return (
+            "The course is too short for an overtaking event: no lane change planned."
+        )
+    fewest = min(parts, key=lambda each: each.completed / each.planned)
+    text = (
+        f"Of {plural(whole.planned, 'planned lane change')} {whole.completed} were "
+        f"completed ({percent(whole.completed, whole.planned)}); "
+        f"{plural(whole.dropped, 'crossing')} of the line made no lane change "
+        "and dropped out."
+    )
+    if fewest.completed == fewest.planned:
+        return text
+    return (
+        f"{text} Fewest were completed in {fewest.name}: {fewest.completed} of "
+        f"{fewest.planned}."
+    )
+
+
+def _method_sentence(material: StudyMaterial) -> str:
+    configuration = material.study.configuration
+    method = str(configuration.get("method", "ibhs"))
+    intention = str(configuration.get("intention", "network"))
+    model = str(configuration.get("intention_model_hash") or "")[:12]
+    reading = {
+        "network": f"read by the network with weights {model}",
+        "scripted": "scripted: the system was told the driver's own plan, so that "
+        "nothing here judges a network",
+        "off": "not read",
+    }.get(intention, intention)
+    return (
+        f"The guidance was the method {method}; the driver's intention was {reading}."
+    )
+
+
+def detection_sentence(material: StudyMaterial) -> str:
+    """Say how many intended lane changes were announced, how early, at what cost."""
+    trials, changes = material.trials, material.lane_changes
+    known = trials.dropna(subset=["num_false_triggers"])
+    if known.empty:
+        return "No trial has triggers to judge."
+    distance = float(known["distance"].sum()) / 1000.0
+    false, early = (
+        int(known[f"num_{kind}_triggers"].sum()) for kind in ("false", "early")
+    )
+    missed = int(known["num_missed"].sum())
+    return (
+        f"{_announced(changes)} Missed: {missed}. "
+        f"{plural(false, 'false trigger')} in {number(distance, 0)} km "
+        f"({number(false / distance, 3)} per km), and {early} early by 3 to 5 s."
+    )
+
+
+def _announced(changes: pd.DataFrame) -> str:
+    leads = changes["detection_lead_time"].dropna()
+    announced = leads[leads > 0.0]
+    if announced.empty:
+        return f"Of {plural(len(leads), 'intended lane change')} none was announced."
+    return (
+        f"{len(announced)} of {plural(len(leads), 'completed intended lane change')} "
+        f"({percent(len(announced), len(leads))}) were announced, half of them at "
+        f"least {number(float(announced.median()), 2)} s before the crossing."
+    )
+
+
+def inconsistency_sentence(material: StudyMaterial) -> str:
+    """Say how often driver and guidance were found to want different paths."""
+    known = material.trials.dropna(subset=["num_inconsistencies"])
+    if known.empty:
+        return "No assisted trial: there is no verdict on inconsistency."
+    amount = int(known["num_inconsistencies"].sum())
+    changes = int(known["num_lane_changes"].sum())
+    text = (
+        f"{plural(amount, 'inconsistency', 'inconsistencies')} in "
+        f"{plural(len(known), 'assisted trial')} with {plural(changes, 'lane change')}"
+    )
+    if amount == 0:
+        return f"{text}."
+    recovery = weighted(known, "recovery_time")
+    lowest = float(known["inconsistency_gain_minimum"].min())
+    return (
+        f"{text}; mean time from the first inconsistent verdict until the gain was "
+        f"back {number(recovery, 1)} s; lowest gain {number(lowest, 3)}."
+    )
+
+
+def weighted(trials: pd.DataFrame, column: str) -> float:
+    """Mean over inconsistencies of a column that holds one mean per trial."""
+    known = trials.dropna(subset=[column])
+    weights = known["num_inconsistencies"]
+    if float(weights.sum()) == 0.0:
+        return math.nan
+    return float((known[column] * weights).sum() / weights.sum())
+
+
+def departure_sentence(material: StudyMaterial) -> str:
+    """Say how often a wheel was over a line outside a lane change."""
+    trials = material.trials
+    parts = []
+    for strength in strengths_driven(material):
+        rows = trials[trials["strength"] == strength]
+        hours = float(rows["lane_keeping_duration"].sum()) / 3600.0
+        amount = int(rows["num_lane_departures"].sum())
+        parts.append(f"{strength} {amount} in {number(hours, 2)} h")
+    return f"In lane keeping: {listed(parts)}."

@@ -1,0 +1,219 @@
+"""What stands on the page in which order, and the numbers of tables and figures."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import NamedTuple
+
+from costeer.study.figures.exhibit import Exhibit
+from costeer.study.material import StudyMaterial, is_virtual
+from costeer.study.quantities import BY_STRENGTH, WORKLOAD
+from costeer.study.reporting import event_tables, making, statistics_tables, tables
+from costeer.study.reporting.findings import shown_quantities
+from costeer.study.reporting.tables import Table
+
+
+class Picture(NamedTuple):
+    """A figure as it stands on the page.
+
+    Attributes:
+        exhibit: Its words.
+        svg: Its drawing; empty if there is none.
+        half: Whether two stand side by side.
+    """
+
+    exhibit: Exhibit
+    svg: str
+    half: bool
+
+
+class Section(NamedTuple):
+    """A section of the page.
+
+    Attributes:
+        name: Anchor.
+        title: Heading.
+        text: Paragraphs before the items.
+        items: Tables and pictures.
+    """
+
+    name: str
+    title: str
+    text: tuple[str, ...]
+    items: tuple[Table | Picture, ...]
+
+
+def page_sections(
+    material: StudyMaterial, pictures: Mapping[str, Picture]
+) -> list[Section]:
+    """Return all sections; every picture stands in one of them.
+
+    Args:
+        material: The study.
+        pictures: By name.
+    """
+    return [
+        _results(material),
+        _lane_keeping(material, pictures),
+        _lane_changes(material, pictures),
+        _effort(material, pictures),
+        _intention(material, pictures),
+        _inconsistencies(material, pictures),
+        _signals(pictures),
+        _tests(material),
+        _trials(material),
+        _making(material),
+    ]
+
+
+def _results(material: StudyMaterial) -> Section:
+    items = (tables.measures_table(material), event_tables.lane_changes_table(material))
+    return Section("results", "Results in two tables", (), items)
+
+
+def _lane_keeping(material: StudyMaterial, pictures: Mapping[str, Picture]) -> Section:
+    text = (
+        "Measured in the left lane, away from lane changes and overtaking. SDLP is "
+        "the standard deviation of the lane position; the reversal rate counts turns "
+        "of the steering wheel larger than 3 deg.",
+    )
+    items = _chosen(pictures, BY_STRENGTH)
+    items += (tables.strengths_table(material), event_tables.driving_table(material))
+    return Section("lane-keeping", "Lane keeping", text, items)
+
+
+def _lane_changes(material: StudyMaterial, pictures: Mapping[str, Picture]) -> Section:
+    names = (
+        "trajectories",
+        "overshoot",
+        "duration",
+        "steering_velocity_rms",
+        "peak_steering_angle",
+    )
+    text = (
+        "A lane change lasts from the last yaw within 0.5 deg before the crossing of "
+        "the line to the first after it. Overshoot is the distance from the new lane's "
+        "centre at the first lateral extremum after the crossing.",
+    )
+    items = (*_chosen(pictures, names), event_tables.durations_table(material))
+    return Section("lane-change-measures", "Lane changes", text, items)
+
+
+def _effort(material: StudyMaterial, pictures: Mapping[str, Picture]) -> Section:
+    scores = tuple(each.name for each in WORKLOAD)
+    items = _chosen(pictures, ("driver_torque_rms", "workload", *scores))
+    text = ("Root mean square of the driver's torque over the whole course.",)
+    return Section("effort", "Effort", text, items)
+
+
+def _intention(material: StudyMaterial, pictures: Mapping[str, Picture]) -> Section:
+    network = making.network_table(material)
+    items = (*_chosen(pictures, ("detection",)), event_tables.detection_table(material))
+    items += (network,) if network else ()
+    text = _INTENTION_TEXTS.get(
+        str(material.study.configuration.get("intention", "network")), ()
+    )
+    return Section("intention", "Reading the intention", text, items)
+
+
+_INTENTION_TEXTS = {
+    "network": (
+        "The network gives the probability that the car crosses a lane line within the "
+        "next 3 s. A trigger needs several verdicts above the threshold in a row. Each "
+        "trigger is judged here in the loop, against what the driver wanted.",
+    ),
+    "scripted": (
+        "In this study the intention was scripted: the system was told the driver's "
+        "own plan. The numbers below describe that script; they say nothing about how "
+        "well a network reads drivers.",
+    ),
+}
+
+
+def _inconsistencies(
+    material: StudyMaterial, pictures: Mapping[str, Picture]
+) -> Section:
+    text = (
+        "Driver and guidance are inconsistent when their torques point to opposite "
+        "sides and their pseudo-works differ by more than a threshold. The gain then "
+        "fades out; below the re-plan gain the system plans anew; the gain fades in "
+        "again.",
+    )
+    items = _chosen(pictures, ("inconsistency", "gain-adjustment"))
+    items += (event_tables.inconsistencies_table(material),)
+    return Section("inconsistency", "Inconsistency and gain", text, items)
+
+
+def _signals(pictures: Mapping[str, Picture]) -> Section:
+    items = _chosen(pictures, ("signals-strong", "signals-weak"))
+    return Section("signals", "Signals of one participant", (), items)
+
+
+def _tests(material: StudyMaterial) -> Section:
+    items: list[Table] = [statistics_tables.effects_table(material)]
+    optional = statistics_tables.mixed_table(material)
+    items += [optional] if optional else []
+    items += [
+        statistics_tables.pairs_table(material, each)
+        for each in shown_quantities(material)
+    ]
+    dropped = statistics_tables.dropped_table(material)
+    items += [dropped] if dropped else []
+    text = _TWO_ANALYSES if dropped else (*_TWO_ANALYSES, "No data had to be dropped.")
+    return Section("tests", "Tests", text, tuple(items))
+
+
+_TWO_ANALYSES = (
+    "Two sets of tests stand side by side. As published, or pooled: every trial or "
+    "lane change counts as if another driver had made it. The paper's F(6, 652), F(2, "
+    "559) and F(6, 77) show by their degrees of freedom that its tests were made "
+    "that way; pooled tests let this study be laid beside it. Within subjects: the "
+    "values of a participant in a condition are averaged first, and an effect is "
+    "compared with how much it varies from participant to participant. Every "
+    "participant drove every condition, so this is the set to draw conclusions from.",
+    "The two can disagree in both directions. Where participants merely differ in "
+    "level, pooling buries effects under differences between people. Where each of "
+    "them answers a condition in a personal way, pooling finds effects that are those "
+    "of the few who came: eight lane changes of one driver are not eight drivers.",
+    "F tests within subjects are corrected after Greenhouse and Geisser, comparisons "
+    "after Benjamini and Hochberg over the comparisons of a measure with manual (over "
+    "the three pairs of strengths apart). Nothing is corrected across measures. "
+    "Differences are first minus second with 95 % intervals; d and d_z are Cohen's, "
+    "on different scales.",
+)
+
+
+def _trials(material: StudyMaterial) -> Section:
+    return Section("every-trial", "Every trial", (), (tables.trials_table(material),))
+
+
+def _making(material: StudyMaterial) -> Section:
+    virtual = (
+        "Each trial was simulated: car, steering column, leaders and driver at a "
+        "whole number of steps per control step of 60 Hz. A virtual driver is drawn "
+        "from seed and number, its noise also from the condition, so the same "
+        "settings give the same bytes.",
+    )
+    text = (
+        "This page, the tables and the figures hold nothing but what follows from the "
+        "records and settings below; there is no date in them. The folder holds the "
+        "records (records/), the tables as CSV (trials, lane_changes, tests, pairs, "
+        "summaries, dropped) and the figures as SVG (figures/). costeer report makes "
+        "all but the records and the first two tables again.",
+    )
+    items = (
+        making.settings_table(material),
+        making.records_table(material),
+        making.thresholds_table(),
+        making.order_table(material),
+        making.versions_table(),
+    )
+    whole = (*virtual, *text) if is_virtual(material) else text
+    return Section("making", "How it was made", whole, items)
+
+
+def _chosen(
+    pictures: Mapping[str, Picture], names: Sequence[str]
+) -> tuple[Table | Picture, ...]:
+    found = (pictures.get(name.replace("_", "-")) for name in names)
+    return tuple(each for each in found if each is not None)

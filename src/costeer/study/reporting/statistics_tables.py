@@ -1,0 +1,169 @@
+"""The tables of the report that hold tests, pairs and dropped data."""
+
+from __future__ import annotations
+
+import math
+
+from costeer.study.material import StudyMaterial
+from costeer.study.outcome import MIXED, PUBLISHED, WITHIN, EffectRow, PairRow
+from costeer.study.quantities import Quantity
+from costeer.study.reporting.findings import shown_quantities
+from costeer.study.reporting.numerals import (
+    NOTHING,
+    degrees_of_freedom,
+    interval,
+    number,
+    p_value,
+    signed,
+)
+from costeer.study.reporting.tables import Table
+
+EFFECTS = {
+    "condition": "condition",
+    "strength": "strength",
+    "change_duration": "planned duration",
+    "strength:change_duration": "strength × planned duration",
+}
+MOST_DROPPED = 60
+"""Rows of dropped data in the report; all are in `dropped.csv`."""
+
+
+def effects_table(material: StudyMaterial) -> Table:
+    """Return the analyses of variance, as published beside within subjects."""
+    rows: list[tuple[str, ...]] = []
+    for quantity in shown_quantities(material):
+        tests = [row for row in material.tests.tests if row.measure == quantity.name]
+        for effect in dict.fromkeys(row.effect for row in tests):
+            by_analysis = {row.analysis: row for row in tests if row.effect == effect}
+            cells = [
+                cell
+                for analysis in (PUBLISHED, WITHIN)
+                for cell in _effect_cells(by_analysis.get(analysis))
+            ]
+            named = any(row[0] == quantity.title for row in rows)
+            title = "" if named else quantity.title
+            rows.append((title, EFFECTS.get(effect, effect), *cells))
+    return Table(
+        name="effects",
+        title="Analyses of variance, as published and within subjects",
+        note="Planned duration and its interaction are tested without manual. Within "
+        "subjects the degrees of freedom are those after Greenhouse-Geisser, and p "
+        "belongs to them. η²p: partial eta squared with its 95 % interval.",
+        header=(
+            "Measure",
+            "Effect",
+            "Pooled F (df)",
+            "p",
+            "η²p",
+            "Within F (df)",
+            "p",
+            "η²p",
+        ),
+        rows=tuple(rows),
+        num_labels=2,
+    )
+
+
+def mixed_table(material: StudyMaterial) -> Table | None:
+    """Return the mixed models of measures with missing cells; None without any."""
+    titles = {each.name: each.title for each in shown_quantities(material)}
+    rows = [
+        (titles[row.measure], EFFECTS.get(row.effect, row.effect), *_effect_cells(row))
+        for row in material.tests.tests
+        if row.analysis == MIXED and row.measure in titles
+    ]
+    if not rows:
+        return None
+    return Table(
+        name="mixed",
+        title="Mixed models with participant as random effect",
+        note="For measures of which a participant lacks a cell: all cells that are "
+        "there take part.",
+        header=("Measure", "Effect", "F (df)", "p", "η²p"),
+        rows=tuple(rows),
+        num_labels=2,
+    )
+
+
+def _effect_cells(row: EffectRow | None) -> tuple[str, str, str]:
+    if row is None or not math.isfinite(row.statistic):
+        return NOTHING, NOTHING, row.note if row is not None else NOTHING
+    df1, df2 = (degrees_of_freedom(row.epsilon * df) for df in (row.df1, row.df2))
+    size = number(row.effect_size, 2)
+    ends = interval(row.effect_size_low, row.effect_size_high, 2)
+    return (
+        f"{number(row.statistic, 2)} ({df1}, {df2})",
+        f"{p_value(row.p_corrected)} {row.mark}".rstrip(),
+        f"{size} {ends}".rstrip(),
+    )
+
+
+def pairs_table(material: StudyMaterial, quantity: Quantity) -> Table:
+    """Return the comparisons of one measure, as published beside within subjects."""
+    pairs = [row for row in material.tests.pairs if row.measure == quantity.name]
+    rows = []
+    for first, second in dict.fromkeys((row.first, row.second) for row in pairs):
+        by_analysis = {
+            row.analysis: row for row in pairs if row[2:4] == (first, second)
+        }
+        cells = [
+            cell
+            for analysis in (PUBLISHED, WITHIN)
+            for cell in _pair_cells(by_analysis.get(analysis), quantity)
+        ]
+        rows.append((f"{first} − {second}", *cells))
+    return Table(
+        name=f"pairs-{quantity.name.replace('_', '-')}",
+        title=f"{quantity.title}: differences [{quantity.unit}]",
+        note="",
+        header=(
+            "Pair",
+            "Pooled difference",
+            "t (df)",
+            "p",
+            "d",
+            "Within difference",
+            "t (df)",
+            "p",
+            "d_z",
+        ),
+        rows=tuple(rows),
+    )
+
+
+def _pair_cells(row: PairRow | None, quantity: Quantity) -> tuple[str, str, str, str]:
+    if row is None:
+        return NOTHING, NOTHING, NOTHING, NOTHING
+    low, high = row.low * quantity.factor, row.high * quantity.factor
+    difference = signed(row.mean_difference * quantity.factor, quantity.digits)
+    if not math.isfinite(row.statistic):
+        return difference, NOTHING, NOTHING, row.note or NOTHING
+    size = number(row.effect_size, 2)
+    ends = interval(row.effect_size_low, row.effect_size_high, 2)
+    return (
+        f"{difference}\n{interval(low, high, quantity.digits)}",
+        f"{number(row.statistic, 2)} ({degrees_of_freedom(row.df)})",
+        f"{p_value(row.p_corrected)} {row.mark}".rstrip(),
+        f"{size}\n{ends}",
+    )
+
+
+def dropped_table(material: StudyMaterial) -> Table | None:
+    """Return the data that no test could use; None if there are none."""
+    titles = {each.name: each.title for each in shown_quantities(material)}
+    dropped = material.tests.dropped
+    if not dropped:
+        return None
+    rows = [
+        (titles.get(row.measure, row.measure), row.participant, row.cell, row.reason)
+        for row in dropped[:MOST_DROPPED]
+    ]
+    more = len(dropped) - len(rows)
+    return Table(
+        name="dropped",
+        title="Dropped data",
+        note=f"{more} more rows stand in dropped.csv." if more else "",
+        header=("Measure", "Participant", "Cell", "Reason"),
+        rows=tuple(rows),
+        num_labels=4,
+    )

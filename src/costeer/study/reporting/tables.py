@@ -1,0 +1,155 @@
+"""The tables of the report, as text in cells."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import NamedTuple
+
+from costeer.study.conditions import MANUAL
+from costeer.study.material import (
+    StudyMaterial,
+    conditions_driven,
+    mark_of,
+    pair,
+    strengths_driven,
+    summary,
+)
+from costeer.study.outcome import PUBLISHED, WITHIN
+from costeer.study.quantities import BY_STRENGTH, DEG, Quantity
+from costeer.study.reporting.findings import shown_quantities
+from costeer.study.reporting.numerals import (
+    NOTHING,
+    count,
+    interval,
+    number,
+)
+
+
+class Table(NamedTuple):
+    """A table of the report.
+
+    Attributes:
+        name: Anchor.
+        title: Caption.
+        note: What one must know to read it; may be empty.
+        header: Names of the columns.
+        rows: Text of the cells; a line break in a cell is shown as one.
+        num_labels: Leading columns that are words, not numbers.
+    """
+
+    name: str
+    title: str
+    note: str
+    header: tuple[str, ...]
+    rows: tuple[tuple[str, ...], ...]
+    num_labels: int = 1
+
+
+def measures_table(material: StudyMaterial) -> Table:
+    """Return the mean of each measure in each condition with its interval."""
+    names = conditions_driven(material)
+    rows = []
+    for quantity in shown_quantities(material):
+        means = _means(material, quantity, "condition", names)
+        marks = [_marks(material, quantity, name) for name in names]
+        cells = ["\n".join(parts) for parts in zip(means, marks, strict=True)]
+        rows.append((f"{quantity.title}\n[{quantity.unit}]", *cells))
+    return Table(
+        name="measures",
+        title="Measures by condition",
+        note="Mean over participants' own means; below it the 95 % interval; then "
+        "the marks of the difference from manual, within subjects | pooled as "
+        "published: * p < 0.05, ** p < 0.01, *** p < 0.001, n.s. not significant.",
+        header=("Measure", *names),
+        rows=tuple(rows),
+    )
+
+
+def strengths_table(material: StudyMaterial) -> Table:
+    """Return the measures of lane keeping by strength."""
+    names = strengths_driven(material)
+    shown = [each for each in shown_quantities(material) if each.name in BY_STRENGTH]
+    return Table(
+        name="strengths",
+        title="Lane keeping by strength",
+        note="Mean over participants' own means, below it the 95 % interval.",
+        header=("Measure", *names),
+        rows=tuple(
+            (f"{each.title}\n[{each.unit}]", *_means(material, each, "strength", names))
+            for each in shown
+        ),
+    )
+
+
+def _means(
+    material: StudyMaterial, quantity: Quantity, factor: str, levels: Sequence[str]
+) -> list[str]:
+    cells = []
+    for level in levels:
+        row = summary(material, quantity.name, factor, level)
+        if row is None or not math.isfinite(row.mean):
+            cells.append(NOTHING)
+            continue
+        mean = number(row.mean * quantity.factor, quantity.digits)
+        ends = (row.low * quantity.factor, row.high * quantity.factor)
+        cells.append(f"{mean}\n{interval(*ends, quantity.digits)}".rstrip())
+    return cells
+
+
+def _marks(material: StudyMaterial, quantity: Quantity, name: str) -> str:
+    """Marks of both analyses against manual; nothing for manual itself."""
+    if name == MANUAL:
+        return ""
+    rows = [
+        pair(material, quantity.name, analysis, name, MANUAL)
+        for analysis in (WITHIN, PUBLISHED)
+    ]
+    return " | ".join(mark_of(row) for row in rows)
+
+
+def trials_table(material: StudyMaterial) -> Table:
+    """Return each trial with its own measures."""
+    columns = {
+        "sdlp": ("SDLP [m]", 1.0, 3),
+        "swrr": ("Reversals [1/min]", 1.0, 2),
+        "driver_torque_rms": ("Torque RMS [N·m]", 1.0, 3),
+        "num_lane_changes": ("Lane changes", 1.0, 0),
+        "num_dropped_changes": ("Dropped", 1.0, 0),
+        "num_false_triggers": ("False triggers", 1.0, 0),
+        "num_missed": ("Missed", 1.0, 0),
+        "num_inconsistencies": ("Inconsistencies", 1.0, 0),
+    }
+    changes = {
+        "overshoot": ("Overshoot [m]", 1.0, 3),
+        "steering_velocity_rms": ("RMS velocity [deg/s]", DEG, 2),
+        "peak_steering_angle": ("Peak angle [deg]", DEG, 2),
+        "duration": ("Duration [s]", 1.0, 2),
+    }
+    own = material.lane_changes.groupby(["participant", "condition"])[list(changes)]
+    table = material.trials.set_index(["participant", "condition"])[["order", *columns]]
+    table = table.join(own.mean().rename(columns=lambda name: f"change_{name}"))
+    shown = {**columns, **{f"change_{name}": form for name, form in changes.items()}}
+    rows = [
+        (
+            str(key[0]),
+            str(key[1]),
+            count(float(row["order"])),
+            *(number(float(row[c]) * f, digits) for c, (_, f, digits) in shown.items()),
+        )
+        for key, row in table.iterrows()
+    ]
+    return Table(
+        name="trials",
+        title="Every trial",
+        note="The last four columns are means over the lane changes of the trial. More "
+        "columns and every lane change stand in trials.csv and lane_changes.csv.",
+        header=(
+            "Participant",
+            "Condition",
+            "Order",
+            *(t for t, _, _ in shown.values()),
+        ),
+        rows=tuple(rows),
+        num_labels=2,
+    )
