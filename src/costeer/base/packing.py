@@ -2,12 +2,13 @@
 
 Inside, the equations work on nested named tuples; at the boundary one packed float64
 array is handed over, because unboxing a deep tuple costs Numba microseconds a call.
-Booleans and whole numbers become floats, arrays inside a tuple lie flat in place.
+Booleans and whole numbers become floats; a vector inside a tuple lies in its place.
 """
 
 from __future__ import annotations
 
-from typing import Any, TypeVar, cast
+from collections.abc import Iterator
+from typing import Any, NamedTuple, TypeVar, cast
 
 import numpy as np
 from numba import types
@@ -81,47 +82,80 @@ def _unpack(like: Any, array: NDArray[np.float64], offset: int) -> tuple[Any, in
     return type(like)(array[offset]), offset + 1
 
 
-def _leaves(kind: Any, expression: str, leaves: list[str]) -> None:
-    """Collect the expressions of all numbers in a Numba tuple type."""
-    if isinstance(kind, types.BaseNamedTuple):
-        for name, part in zip(kind.fields, kind.types, strict=True):
-            _leaves(part, f"{expression}.{name}", leaves)
-        return
-    leaves.append(expression)
+class _Leaf(NamedTuple):
+    """A number or an array in a Numba tuple type.
+
+    Attributes:
+        expression: How the source reaches it, e.g. `value.car.mass`.
+        kind: Its Numba type.
+        place: Where it lies in the packed array, as source.
+    """
+
+    expression: str
+    kind: Any  # Any: Numba does not type its types
+    place: str
+
+
+def _is_tuple(kind: Any) -> bool:
+    """Whether a Numba type is that of a named tuple."""
+    return isinstance(kind, types.BaseNamedTuple)
+
+
+def _leaves(kind: Any, expression: str) -> list[tuple[str, Any]]:
+    """Expression and type of all leaves of a Numba tuple type, in order."""
+    if not _is_tuple(kind):
+        return [(expression, kind)]
+    parts = zip(kind.fields, kind.types, strict=True)
+    return [
+        leaf for name, part in parts for leaf in _leaves(part, f"{expression}.{name}")
+    ]
+
+
+def _placed(kind: Any, expression: str) -> list[_Leaf]:
+    """All leaves with their places; how long an array is, is asked at run time."""
+    count, sizes, leaves = 0, "", []
+    for leaf, part in _leaves(kind, expression):
+        first = f"{count}{sizes}"
+        if isinstance(part, types.Array):
+            sizes += f" + {leaf}.size"
+            leaves.append(_Leaf(leaf, part, f"{first}:{count}{sizes}"))
+        else:
+            count += 1
+            leaves.append(_Leaf(leaf, part, first))
+    return leaves
 
 
 @overload(pack, strict=False)
 def _pack_compiled(array: Any, value: Any) -> Any:
-    """Only tuples of numbers: compiled code keeps windows outside what it packs."""
-    leaves: list[str] = []
-    _leaves(value, "value", leaves)
-    lines = [f"    array[{i}] = {leaf}\n" for i, leaf in enumerate(leaves)]
+    lines = [
+        f"    array[{leaf.place}] = {leaf.expression}\n"
+        for leaf in _placed(value, "value")
+    ]
     return _written("def implementation(array, value):\n" + "".join(lines), {})
 
 
 @overload(unpack, strict=False)
 def _unpack_compiled(like: Any, array: Any) -> Any:
     names: dict[str, Any] = {}
-    expression, _ = _constructor(like, names, 0)
+    leaves = iter(_placed(like, "like"))
+    expression = _constructor(like, names, leaves)
     source = f"def implementation(like, array):\n    return {expression}\n"
     return _written(source, names)
 
 
-def _constructor(kind: Any, names: dict[str, Any], i: int) -> tuple[str, int]:
-    """Return the expression that rebuilds `kind` from `array[i:]`."""
-    if isinstance(kind, types.BaseNamedTuple):
+def _constructor(kind: Any, names: dict[str, Any], leaves: Iterator[_Leaf]) -> str:
+    """Return the expression that rebuilds `kind` from the leaves' places."""
+    if _is_tuple(kind):
         name = f"Tuple{len(names)}"
         names[name] = kind.instance_class
-        parts = []
-        for part in kind.types:
-            expression, i = _constructor(part, names, i)
-            parts.append(expression)
-        return f"{name}({', '.join(parts)})", i
+        parts = [_constructor(part, names, leaves) for part in kind.types]
+        return f"{name}({', '.join(parts)})"
+    stored = f"array[{next(leaves).place}]"
     if isinstance(kind, types.Boolean):
-        return f"(array[{i}] != 0.0)", i + 1
+        return f"({stored} != 0.0)"
     if isinstance(kind, types.Integer):
-        return f"int(array[{i}])", i + 1
-    return f"array[{i}]", i + 1
+        return f"int({stored})"
+    return f"{stored}.copy()" if isinstance(kind, types.Array) else stored
 
 
 def _written(source: str, names: dict[str, Any]) -> Any:

@@ -50,7 +50,7 @@ def float64() -> Any:  # Any: a context manager of JAX's own
     jax = _jax()
     if hasattr(jax, "enable_x64"):
         return jax.enable_x64(True)
-    return import_module("jax.experimental").enable_x64()  # before JAX 0.8
+    return import_module("jax.experimental").enable_x64()  # older ones
 
 
 def trace(
