@@ -1,1 +1,1 @@
-"""Mathematics without cars: angles, curves, integration, windows, filters, array engine."""
+"""Mathematics without cars: curves, integration, windows, filters, array engine."""

@@ -21,6 +21,7 @@ import numba
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 _KEPT_FOLDERS = 3
+_settings = cast("Any", numba.config)  # Any: Numba sets its attributes at import
 
 COMPILED_ROOMS = (
     "base",
@@ -73,10 +74,10 @@ def entry(function: Function) -> Function:
     The compiled function releases the global interpreter lock, so threads run trials
     side by side.
     """
-    before = numba.config.CACHE_DIR
-    numba.config.CACHE_DIR = str(cache_folder())
+    before = _settings.CACHE_DIR
+    _settings.CACHE_DIR = str(cache_folder())
     try:
         decorate = numba.njit(cache=True, nogil=True, error_model="numpy")
         return cast("Function", decorate(function))
     finally:
-        numba.config.CACHE_DIR = before
+        _settings.CACHE_DIR = before

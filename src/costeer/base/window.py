@@ -77,4 +77,5 @@ def full(window: Window) -> Flag:
 @compiled
 def mean(window: Window) -> Real:
     """Mean of a full window; summed anew each time, so that no rounding drifts."""
-    return window.values.sum() / len(window.values)
+    total: Real = window.values.sum()
+    return total / len(window.values)

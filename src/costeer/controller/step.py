@@ -21,7 +21,13 @@ from costeer.controller.guidance import GuidanceParameters
 from costeer.controller.inference import InferenceParameters, InferenceState
 from costeer.controller.preview import PreviewParameters
 from costeer.controller.replanning import ReplanningParameters
-from costeer.controller.signals import Intention, Signals, Target
+from costeer.controller.signals import (
+    Guidance,
+    Intention,
+    Preview,
+    Signals,
+    Target,
+)
 from costeer.controller.strength import StrengthParameters, StrengthState
 from costeer.controller.trajectory import TrajectoryParameters, TrajectoryState
 from costeer.plant.parameters import CarParameters, ColumnParameters, RoadParameters
@@ -133,6 +139,18 @@ def plan(
 
 
 @compiled
+def instruct(
+    parameters: ControllerParameters, target: Target, measurement: Measurement
+) -> tuple[Preview, Guidance]:
+    """Errors at the preview point and the torques they call for."""
+    errors = preview.preview(parameters.preview, parameters.car, target, measurement)
+    torques = guidance.guide(
+        parameters.guidance, parameters.car, parameters.column, errors
+    )
+    return errors, torques
+
+
+@compiled
 def step(
     parameters: ControllerParameters,
     state: ControllerState,
@@ -154,10 +172,7 @@ def step(
     inference_state, intention, trajectory_state, target = plan(
         parameters, state, measurement, crossing_probability, requested, dt
     )
-    errors = preview.preview(parameters.preview, parameters.car, target, measurement)
-    torques = guidance.guide(
-        parameters.guidance, parameters.car, parameters.column, errors
-    )
+    errors, torques = instruct(parameters, target, measurement)
     consistency_state, verdict = consistency.step(
         parameters.consistency,
         state.consistency,
