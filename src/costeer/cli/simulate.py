@@ -51,9 +51,7 @@ def simulate(
     initial_offset: Annotated[
         float, typer.Option(metavar="M", help="From the lane's centre at the start.")
     ] = 0.0,
-    engine: Annotated[str, typer.Option(help="numba, or python for reference.")] = (
-        "numba"
-    ),
+    engine: Annotated[str, typer.Option(help="numba, python or jax.")] = ("numba"),
 ) -> None:
     """Simulate one trial, write its record and tell what happened.
 
@@ -91,7 +89,7 @@ def simulate_to_file(out: Path, setup: TrialSetup, engine: str = "numba") -> Non
     Args:
         out: File to write. A simulated trial is replaced, nothing else.
         setup: What the trial is.
-        engine: `numba` or `python`.
+        engine: `numba`, `python` or `jax`.
 
     Raises:
         ValueError: If the setup cannot be run, or the file is not to be replaced.

@@ -38,6 +38,9 @@ INTENTIONS = {
 DRIVERS = ("virtual", "hands-off")
 """Who holds the wheel."""
 
+PILOT_SEED = 900_001
+"""Seed of the pilot drivers that set the inconsistency threshold δ."""
+
 SLIP_ANGLE_GAIN_SHARE = 0.45
 """K_alpha over the car's self-aligning stiffness [-]."""
 
@@ -140,6 +143,19 @@ def check_setup(setup: TrialSetup) -> None:
                 f"trigger time {time} is not possible; give seconds from the start, "
                 "0 or more"
             )
+
+
+def check_study_seed(seed: int) -> None:
+    """Refuse the pilot drivers as participants: δ was tuned on them.
+
+    Raises:
+        ValueError: If it is their seed.
+    """
+    if seed == PILOT_SEED:
+        raise ValueError(
+            f"seed {seed} is that of the pilot drivers, on whom the inconsistency "
+            "threshold was set; give another seed"
+        )
 
 
 def _check_choice(name: str, value: str, choices: tuple[str, ...]) -> None:

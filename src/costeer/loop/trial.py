@@ -102,7 +102,8 @@ def simulate_trial(
 
     Args:
         setup: What the trial is.
-        engine: "numba" or "python"; both give the same numbers.
+        engine: "numba", "python" or "jax"; all give the same numbers. JAX runs no
+            network.
         network: Of the intention; the shipped one if None.
 
     Returns:
@@ -110,6 +111,7 @@ def simulate_trial(
 
     Raises:
         ValueError: If the setup cannot be run or the engine is not known.
+        ModuleNotFoundError: If the engine is not installed.
     """
     parameters = loop_parameters(setup)
     packed, network_hash = _predictor(setup, network)

@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 from costeer import __version__
 from costeer.controller.step import ControllerParameters
 from costeer.intention.weights import load_weights
-from costeer.loop.scenario import TrialSetup, check_setup
+from costeer.loop.scenario import TrialSetup, check_setup, check_study_seed
 from costeer.study.conditions import (
     CONDITION_NAMES,
     MANUAL,
@@ -78,6 +78,7 @@ def check_settings(settings: StudySettings) -> StudySettings:
     """
     check_count("participants", settings.participants, 1, MOST_PARTICIPANTS)
     check_count("seed", settings.seed, 0, LARGEST_SEED)
+    check_study_seed(settings.seed)
     if settings.intention not in INTENTIONS:
         known = ", ".join(INTENTIONS)
         raise ValueError(

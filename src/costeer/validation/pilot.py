@@ -14,11 +14,8 @@ from numpy.typing import NDArray
 
 from costeer.base.array import Real
 from costeer.controller.actuation import STRONG, WEAK
-from costeer.loop.scenario import TrialSetup, trial_driver
+from costeer.loop.scenario import PILOT_SEED, TrialSetup, trial_driver
 from costeer.loop.trial import simulate_trial
-
-PILOT_SEED = 900_001
-"""Seed of the pilot drivers; studies refuse it."""
 
 NEVER = 100.0
 """A threshold that no run reaches, so that the gain stays full [W]."""
