@@ -10,7 +10,7 @@ from costeer.validation.pilot import agreeing_setups
 
 
 def test_a_study_with_the_pilot_seed_is_refused() -> None:
-    with pytest.raises(ValueError, match="pilot drivers.*give another seed"):
+    with pytest.raises(ValueError, match=r"pilot drivers.*give another seed"):
         check_settings(StudySettings(seed=PILOT_SEED))
 
 

@@ -65,7 +65,7 @@ def _shipped_weights() -> WavefrontWeights:
 
 
 @cache
-def _idle_weights() -> WavefrontWeights:
+def idle_weights() -> WavefrontWeights:
     """Two units of zeros, for trials that ask no network."""
     units = 2
     return wavefront_weights(
@@ -87,7 +87,7 @@ def _predictor(
 ) -> tuple[WavefrontWeights, str | None]:
     """Packed weights of the network that a trial asks, and its hash."""
     if setup.intention != "network":
-        return _idle_weights(), None
+        return idle_weights(), None
     if network is not None:
         return wavefront_weights(network.weights), network.hash
     return _shipped_weights(), shipped_network().hash
