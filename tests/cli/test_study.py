@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from costeer.cli import main
-from costeer.cli.trial_progress import speedometer, trial_progress
+from costeer.cli.trial_progress import speedometer, study_progress
 from costeer.study import run
 from costeer.study.trial_tables import TrialRows
 from costeer.study.trials import TrialDone
@@ -40,6 +40,7 @@ def test_a_study_ends_with_its_report(
     assert "2 trials simulated, 0 were there" in shown.out
     assert shown.out.endswith(f"{out / 'report.html'}\n")
     assert "trials: 2 of 2" in shown.err
+    assert shown.err.endswith("report: plain\n")
 
 
 @pytest.mark.usefixtures("_fake")
@@ -135,13 +136,14 @@ def test_a_terminal_sees_trials_and_speed(
 ) -> None:
     monkeypatch.setenv("COLUMNS", "120")
     monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
-    with trial_progress(2) as show:
-        show(done(400.0))
-        show(done(400.0))
+    with study_progress(2) as display:
+        display.trial(done(400.0))
+        display.trial(done(400.0))
+        display.step("figures")
     shown = capsys.readouterr()
     assert shown.out == ""
     assert "2/2" in shown.err
-    assert "driver-s/s" in shown.err
+    assert "report: figures" in shown.err
 
 
 def test_two_real_trials_are_the_same_in_any_number_of_jobs(tmp_path: Path) -> None:

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import time
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from costeer.cli.console import note
-from costeer.cli.trial_progress import trial_progress
+from costeer.cli.trial_progress import study_progress
 from costeer.cli.units import parse_speed
 
 if TYPE_CHECKING:
@@ -104,19 +105,19 @@ def _run(
     from costeer.study.trials import TrialDone, study_trials
 
     begun = ended = time.monotonic()
-    with trial_progress(len(study_trials(settings))) as show:
+    with study_progress(len(study_trials(settings))) as display:
 
         def shown(done: TrialDone) -> None:
             nonlocal ended
             ended = time.monotonic()
-            show(done)
+            display.trial(done)
 
         try:
             outcome = run_study(
                 out,
                 settings,
                 jobs=jobs,
-                report=full_report if report else None,
+                report=partial(full_report, tell=display.step) if report else None,
                 progress=shown,
             )
         except StudyInterrupted as stop:

@@ -1,4 +1,4 @@
-"""How far a study is: trials done, driver-seconds per second, time left."""
+"""How far a study is: trials done, driver-seconds per second, time left, report."""
 
 from __future__ import annotations
 
@@ -6,36 +6,46 @@ import sys
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
-from costeer.cli.console import progress
+from costeer.cli.console import note, progress
 
 if TYPE_CHECKING:
     from costeer.study.trials import TrialDone
 
-ShowTrial = Callable[["TrialDone"], None]
+
+class Display(NamedTuple):
+    """What to call as the study goes on, from one thread.
+
+    Attributes:
+        trial: With each trial that is done.
+        step: With a few words before each step of the report.
+    """
+
+    trial: Callable[[TrialDone], None]
+    step: Callable[[str], None]
 
 
 @contextmanager
-def trial_progress(total: int) -> Iterator[ShowTrial]:
-    """Show on stderr how far the trials are: a bar, or a line for each tenth.
+def study_progress(total: int) -> Iterator[Display]:
+    """Show on stderr how far a study is: a bar, or lines in a log.
 
     Args:
         total: Number of trials.
 
     Yields:
-        A function to call with each trial that is done, from one thread.
+        What to call as it goes on.
     """
     if sys.stderr.isatty():
-        with _bar(total) as show:
-            yield show
+        with _bar(total) as display:
+            yield display
     else:
         with progress("trials", total) as advance:
-            yield lambda _: advance(1)
+            yield Display(lambda _: advance(1), lambda words: note(f"report: {words}"))
 
 
 @contextmanager
-def _bar(total: int) -> Iterator[ShowTrial]:
+def _bar(total: int) -> Iterator[Display]:
     from rich.console import Console
     from rich.progress import (
         BarColumn,
@@ -56,9 +66,12 @@ def _bar(total: int) -> Iterator[ShowTrial]:
         TimeRemainingColumn(),
     )
     rate = speedometer()
-    with Progress(*columns, console=Console(stderr=True)) as display:
-        task = display.add_task("", total=total)
-        yield lambda done: display.update(task, advance=1, description=rate(done))
+    with Progress(*columns, console=Console(stderr=True)) as bar:
+        task = bar.add_task("", total=total)
+        yield Display(
+            trial=lambda done: bar.update(task, advance=1, description=rate(done)),
+            step=lambda words: bar.update(task, description=f"report: {words}"),
+        )
 
 
 def speedometer(

@@ -62,11 +62,16 @@ def ignore(_: object) -> None:
     """Show no progress."""
 
 
-def full_report(folder: Path) -> None:
-    """Write tests, figures and `report.html` into the study's folder."""
+def full_report(folder: Path, tell: Callable[[str], None] = ignore) -> None:
+    """Write tests, figures and `report.html` into the study's folder.
+
+    Args:
+        folder: Of the study.
+        tell: Called with a few words before each step.
+    """
     from costeer.study.report import write_report  # matplotlib takes a second
 
-    write_report(folder, ignore)
+    write_report(folder, tell)
 
 
 def run_study(
