@@ -36,7 +36,7 @@ def compiled(function: Function) -> Function:
     The function itself stays plain Python, so the Python and JAX engines run it as
     it is written; Numba compiles it into whatever calls it.
     """
-    return cast("Function", register_jitable(function))
+    return register_jitable(function)
 
 
 def _numpy_like(value: Any) -> Any:  # Any: this is where engines meet
@@ -98,7 +98,7 @@ def exp(x: Real) -> Real:
 def floor(x: Real) -> Real:
     """Largest whole number not above `x`, as a float."""
     if isinstance(x, (float, int)):
-        return float(math.floor(x))
+        return float(math.floor(x)) if math.isfinite(x) else float(x)
     return cast("Real", _numpy_like(x).floor(x))
 
 
@@ -120,8 +120,8 @@ def maximum(a: Real, b: Real) -> Real:
 
 
 def clip(x: Real, low: Real, high: Real) -> Real:
-    """`x` held between `low` and `high`."""
-    return minimum(maximum(x, low), high)
+    """`x` held between `low` and `high`; NaN stays NaN."""
+    return select(x < low, low, select(x > high, high, x))
 
 
 def logical_not(flag: Flag) -> Flag:
@@ -144,7 +144,7 @@ def repeat(
 ) -> State:
     """Apply `state = function(state, arguments)` a whole number of times."""
     if _is_traced(state):
-        return _repeat_traced(function, times, state, arguments)
+        return cast("State", _repeat_traced(function, times, state, arguments))
     for _ in range(times):
         state = function(state, arguments)
     return state
@@ -169,7 +169,8 @@ def _repeat_traced(function: Any, times: int, state: Any, arguments: Any) -> Any
 def add_scaled(state: State, rate: State, step: Real) -> State:
     """Return `state + step * rate`, field by field, for named tuples of `Real`s."""
     fields = zip(cast("Any", state), cast("Any", rate), strict=True)
-    return cast("Any", type(state))(*(value + step * slope for value, slope in fields))
+    kind = cast("Any", type(state))  # Any: a type variable has no constructor
+    return cast("State", kind(*(value + step * slope for value, slope in fields)))
 
 
 _MATH: dict[Callable[..., Any], Callable[..., Any]] = {
@@ -198,7 +199,7 @@ for _function, _target in _MATH.items():
 
 @overload(floor, strict=False)
 def _floor(x: Any) -> Any:
-    return lambda x: float(math.floor(x))
+    return lambda x: np.floor(x)
 
 
 @overload(minimum, strict=False)
@@ -213,7 +214,7 @@ def _maximum(a: Any, b: Any) -> Any:
 
 @overload(clip, strict=False)
 def _clip(x: Any, low: Any, high: Any) -> Any:
-    return lambda x, low, high: minimum(maximum(x, low), high)
+    return lambda x, low, high: low if x < low else (high if x > high else x)
 
 
 @overload(logical_not, strict=False)
@@ -240,8 +241,9 @@ def _repeat(function: Any, times: Any, state: Any, arguments: Any) -> Any:
 def _add_scaled(state: Any, rate: Any, step: Any) -> Any:
     if not isinstance(state, types.BaseNamedTuple):
         return None
-    terms = ", ".join(f"state.{f} + step * rate.{f}" for f in state.fields)
+    kind = cast("Any", state)  # Any: Numba's tuple types declare no attributes
+    terms = ", ".join(f"state.{f} + step * rate.{f}" for f in kind.fields)
     source = f"def implementation(state, rate, step):\n    return Tuple({terms})\n"
-    names: dict[str, Any] = {"Tuple": state.instance_class}
+    names: dict[str, Any] = {"Tuple": kind.instance_class}
     exec(source, names)  # no other way to write out the fields of a tuple
     return names["implementation"]

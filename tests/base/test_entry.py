@@ -1,0 +1,109 @@
+"""Machine code is found again, and an edit anywhere in what it is made of is seen."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from costeer.base import entry
+from costeer.base.entry import COMPILED_ROOMS, cache_folder, source_hash
+
+EQUATION = """
+from numba.extending import register_jitable
+
+@register_jitable
+def torque(angle):
+    return {factor} * angle
+"""
+
+LOOP = """
+from costeer.base.entry import entry
+from costeer.plant.equation import torque
+
+@entry
+def run(angle):
+    return torque(angle)
+
+if __name__ == "__main__":
+    import costeer.loop.main as imported  # numba caches importable modules only
+    print(imported.run(10.0), sum(imported.run.stats.cache_hits.values()))
+"""
+
+
+def write_package(folder: Path, factor: float) -> None:
+    """A package of two rooms whose loop calls an equation of the plant."""
+    package = folder / "costeer"
+    for room in ("base", "plant", "loop"):
+        (package / room).mkdir(parents=True, exist_ok=True)
+        (package / room / "__init__.py").touch()
+    (package / "__init__.py").touch()
+    shutil.copy(entry.__file__, package / "base" / "entry.py")
+    (package / "plant" / "equation.py").write_text(EQUATION.format(factor=factor))
+    (package / "loop" / "main.py").write_text(LOOP)
+
+
+def run_package(folder: Path) -> tuple[float, int]:
+    """What the loop gives in a new process, and how much it took from the cache."""
+    environment = os.environ | {
+        "PYTHONPATH": str(folder),
+        "COSTEER_CACHE": str(folder / "cache"),
+    }
+    command = [sys.executable, "-m", "costeer.loop.main"]
+    done = subprocess.run(
+        command, cwd=folder, env=environment, capture_output=True, text=True, check=True
+    )
+    result, hits = done.stdout.split()
+    return float(result), int(hits)
+
+
+def test_editing_a_called_equation_changes_the_result(tmp_path: Path) -> None:
+    write_package(tmp_path, factor=2.0)
+    assert run_package(tmp_path) == (20.0, 0)
+    assert run_package(tmp_path) == (20.0, 1)  # now from the cache
+    write_package(tmp_path, factor=3.0)
+    assert run_package(tmp_path) == (30.0, 0)
+
+
+@pytest.mark.parametrize("room", COMPILED_ROOMS)
+def test_the_hash_sees_every_compiled_room(tmp_path: Path, room: str) -> None:
+    file = tmp_path / room / "deep" / "equation.py"
+    file.parent.mkdir(parents=True)
+    hashes = {source_hash(tmp_path)}
+    for text in ("x = 1\n", "x = 2\n"):
+        file.write_text(text)
+        hashes.add(source_hash(tmp_path))
+    file.rename(file.with_name("renamed.py"))
+    assert len(hashes | {source_hash(tmp_path)}) == 4
+
+
+def test_the_hash_ignores_rooms_that_are_not_compiled(tmp_path: Path) -> None:
+    before = source_hash(tmp_path)
+    (tmp_path / "study").mkdir()
+    (tmp_path / "study" / "tables.py").write_text("x = 1\n")
+    assert source_hash(tmp_path) == before
+
+
+def test_the_cache_keeps_the_newest_few_sources(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("COSTEER_CACHE", str(tmp_path))
+    for age in range(6):
+        folder = tmp_path / "numba" / f"earlier-{age}"
+        folder.mkdir(parents=True)
+        os.utime(folder, (1e9 - age, 1e9 - age))
+    current = cache_folder.__wrapped__()
+    kept = {folder.name for folder in (tmp_path / "numba").iterdir()}
+    assert kept == {current.name, "earlier-0", "earlier-1"}
+
+
+def test_without_a_writable_cache_the_temporary_folder_serves(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "file").touch()
+    monkeypatch.setenv("COSTEER_CACHE", str(tmp_path / "file"))
+    assert cache_folder.__wrapped__().parent.name == "costeer-numba"
