@@ -128,10 +128,10 @@ def _run(
 
 def _print_outcome(outcome: StudyOutcome, seconds: float, report: bool) -> None:
     num_new = outcome.num_trials - outcome.num_resumed
-    rate = outcome.driver_seconds / seconds if seconds > 0 else 0.0
-    typer.echo(
-        f"{num_new} trials simulated, {outcome.num_resumed} were there: "
-        f"{outcome.driver_seconds:,.0f} driver-seconds in {seconds:.1f} s, "
-        f"{rate:,.0f} per second"
-    )
+    typer.echo(f"{num_new} trials simulated, {outcome.num_resumed} were there")
+    if num_new and seconds > 0:
+        typer.echo(
+            f"{outcome.driver_seconds:,.0f} driver-seconds in {seconds:.1f} s, "
+            f"{outcome.driver_seconds / seconds:,.0f} per second"
+        )
     typer.echo(outcome.folder / ("report.html" if report else "trials.csv"))
