@@ -124,6 +124,20 @@ def test_a_file_as_folder_is_refused(
     assert (tmp_path / "out").read_text() == "mine"
 
 
+def test_an_interruption_is_130_and_says_how_to_resume(
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    def interrupted(*_: object, **__: object) -> None:
+        raise run.StudyInterrupted("1 of 2 trials are done")
+
+    monkeypatch.setattr(run, "run_study", interrupted)
+    assert main(["study", "--out", str(tmp_path), *OPTIONS]) == 130
+    said = capsys.readouterr().err.splitlines()
+    assert said[0] == "costeer: 1 of 2 trials are done"
+
+
 def test_resumed_trials_are_not_speed() -> None:
     times = iter([0.0, 1.0, 2.0])
     rate = speedometer(clock=lambda: next(times))
