@@ -40,8 +40,12 @@ def aligning_torque(car: CarParameters, front_force: Real) -> Real:
 def motor_torque(
     column: ColumnParameters, torque: Real, command: Real, dt: Real
 ) -> Real:
-    """Torque of the motor after `dt` [s]: a lag that never passes the limit [N·m]."""
-    held = xp.clip(command, -column.torque_limit, column.torque_limit)
+    """Torque of the motor after `dt` [s]: a lag that never passes the limit [N·m].
+
+    A command that is not finite asks for no torque.
+    """
+    asked = xp.select(xp.isfinite(command), command, 0.0)
+    held = xp.clip(asked, -column.torque_limit, column.torque_limit)
     return held + (torque - held) * xp.exp(-dt / column.motor_lag)
 
 
