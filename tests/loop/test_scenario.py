@@ -1,0 +1,107 @@
+"""Setups: what is refused, by name and range, and what follows from one."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from costeer.loop.scenario import (
+    PILOT_SEED,
+    TrialSetup,
+    check_setup,
+    check_study_seed,
+    is_assisted,
+    loop_parameters,
+    trial_driver,
+)
+from costeer.plant.parameters import CARS
+
+STRONG = TrialSetup(condition="strong-normal", strength_factor=1.0)
+
+REFUSED = {
+    "strength_factor is 1.5; give a number from 0.0 to 1.0 -": {"strength_factor": 1.5},
+    "length is 50.0; give a number from 100.0 to 200000.0 m": {"length": 50.0},
+    "speed is 80.0; give a number from 5.0 to 50.0 m/s": {"speed": 80.0},
+    "speed is nan; give a number from 5.0 to 50.0 m/s": {"speed": math.nan},
+    "initial_offset is -2.0; give a number": {"initial_offset": -2.0},
+    "hold_time is -1.0; give a number from 0.0 to 10.0 s": {"hold_time": -1.0},
+    "inconsistency_threshold is inf; give": {"inconsistency_threshold": math.inf},
+    "prediction_horizon is 0.0; give": {"prediction_horizon": 0.0},
+    "participant is -1; give a number from 0": {"participant": -1},
+    "seed is -5; give a number from 0": {"seed": -5},
+    "plant_steps is 2; give a number from 4 to 64": {"plant_steps": 2},
+    "change_duration is nan; give a number from 1 to 30 s": {
+        "change_duration": math.nan
+    },
+    "change_duration is 60.0; give a number": {"change_duration": 60.0},
+    "trigger time -3.0 is not possible; give seconds": {"trigger_times": (-3.0,)},
+    "trigger time nan is not possible": {"trigger_times": (math.nan,)},
+    "car 'lorry' is not known; choose one of default, compact": {"car": "lorry"},
+    "driver 'robot' is not known; choose one of virtual": {"driver": "robot"},
+    "intention 'oracle' is not known; choose one of off": {"intention": "oracle"},
+    "method 'magic' is not known; choose one of ibhs": {"method": "magic"},
+}
+
+
+@pytest.mark.parametrize("message", REFUSED)
+def test_a_setup_that_cannot_be_run_is_refused_by_name(message: str) -> None:
+    with pytest.raises(ValueError, match=r"give|choose") as error:
+        check_setup(STRONG._replace(**REFUSED[message]))
+    assert str(error.value).startswith(message)
+
+
+def test_manual_needs_no_change_duration() -> None:
+    check_setup(TrialSetup(change_duration=math.nan))
+
+
+def test_the_pilot_drivers_are_no_participants() -> None:
+    check_study_seed(1)
+    with pytest.raises(ValueError, match="pilot drivers"):
+        check_study_seed(PILOT_SEED)
+
+
+def test_a_trial_is_assisted_if_method_and_strength_give_torque() -> None:
+    assert is_assisted(STRONG)
+    assert not is_assisted(STRONG._replace(strength_factor=0.0))
+    assert not is_assisted(STRONG._replace(method="manual"))
+    manual = loop_parameters(STRONG._replace(method="manual"))
+    assert manual.controller.actuation.strength_factor == 0.0
+
+
+@pytest.mark.parametrize("name", CARS)
+def test_the_controller_knows_the_car_that_is_driven(name: str) -> None:
+    parameters = loop_parameters(STRONG._replace(car=name))
+    gain = parameters.controller.guidance.slip_angle_gain
+    assert parameters.car == parameters.controller.car == CARS[name]
+    assert gain == pytest.approx(0.45 * CARS[name].aligning_stiffness)
+
+
+def test_a_setup_reaches_every_stage() -> None:
+    setup = STRONG._replace(
+        change_duration=4.0,
+        hold_time=0.2,
+        look_ahead=True,
+        inconsistency_threshold=0.5,
+        length=500.0,
+        initial_offset=0.5,
+        events=False,
+        plant_steps=16,
+    )
+    parameters = loop_parameters(setup)
+    controller = parameters.controller
+    assert controller.trajectory.change_duration == 4.0
+    assert controller.consistency.hold_time == 0.2
+    assert controller.consistency.inconsistency_threshold == 0.5
+    assert controller.preview.look_ahead is True
+    assert parameters.road.length == 500.0
+    assert parameters.start.lateral_offset == 0.5
+    assert parameters.start.events == 0.0
+    assert parameters.plant_steps == 16
+
+
+def test_the_driver_follows_from_seed_and_participant_alone() -> None:
+    other = STRONG._replace(condition="weak-gentle", strength_factor=0.4, car="large")
+    assert trial_driver(STRONG) == trial_driver(other)
+    assert trial_driver(STRONG) != trial_driver(STRONG._replace(participant=2))
+    assert trial_driver(STRONG._replace(driver="hands-off")).arm.hands_on == 0.0

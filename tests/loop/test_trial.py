@@ -1,0 +1,175 @@
+"""One trial from its setup to its record."""
+
+from __future__ import annotations
+
+import json
+import math
+from functools import cache
+
+import numpy as np
+import pytest
+
+from costeer.loop.columns import COLUMNS, METADATA_FIELDS, TrialRecord
+from costeer.loop.scenario import TrialSetup
+from costeer.loop.trial import GUIDANCE_COLUMNS, simulate_trial, trial_duration
+
+MANUAL = TrialSetup(seed=3, intention="off", length=1800.0, change_duration=math.nan)
+STRONG = TrialSetup(
+    seed=3,
+    condition="strong-normal",
+    strength_factor=1.0,
+    intention="scripted",
+    length=1800.0,
+)
+
+
+@cache
+def trial(setup: TrialSetup, engine: str = "numba") -> TrialRecord:
+    return simulate_trial(setup, engine)
+
+
+def as_bytes(record: TrialRecord, num_rows: int | None = None) -> dict[str, bytes]:
+    """Each column's bytes, missing values marked."""
+    return {
+        name: np.ma.filled(values[:num_rows], -9).tobytes()
+        for name, values in record.columns.items()
+    }
+
+
+def test_the_same_setup_gives_the_same_bytes() -> None:
+    again = simulate_trial(STRONG)
+    assert as_bytes(again) == as_bytes(trial(STRONG))
+    assert again.metadata == trial(STRONG).metadata
+
+
+def test_a_longer_trial_begins_like_a_shorter_one() -> None:
+    short = trial(STRONG)
+    long = trial(STRONG._replace(length=2500.0))
+    count = len(short.columns["time"])
+    assert len(long.columns["time"]) > count
+    assert as_bytes(long, count) == as_bytes(short)
+
+
+def test_python_and_numba_give_the_same_trial() -> None:
+    setup = STRONG._replace(length=400.0, trigger_times=(5.0,))
+    for name, values in trial(setup, "python").columns.items():
+        compiled = trial(setup).columns[name]
+        if values.dtype.kind == "f":
+            # Sums of 60 products differ in order: a few units in the last place.
+            np.testing.assert_allclose(values, compiled, rtol=1e-12, atol=1e-12)
+        else:
+            np.testing.assert_array_equal(values, compiled)
+
+
+def test_a_record_has_every_column_and_field_of_the_format() -> None:
+    record = trial(STRONG)
+    assert tuple(record.columns) == tuple(column.name for column in COLUMNS)
+    assert set(record.metadata) == set(METADATA_FIELDS)
+    assert json.loads(json.dumps(record.metadata)) == record.metadata
+
+
+def test_rows_are_60_per_second_from_zero() -> None:
+    time = trial(STRONG).columns["time"]
+    # Summed steps of 1/60: rounding of 1e-16 a step.
+    np.testing.assert_allclose(time, np.arange(time.size) / 60.0, atol=1e-9)
+    assert trial_duration(trial(STRONG)) == pytest.approx(time[-1] + 1.0 / 60.0)
+
+
+def test_a_trial_ends_where_the_road_ends() -> None:
+    columns = trial(STRONG).columns
+    step = columns["longitudinal_velocity"][-1] / 60.0
+    # The step that arrives is the last row, which shows where it began.
+    left = 1800.0 - columns["longitudinal_position"][-1]
+    assert 0.0 < left <= 1.05 * step
+
+
+def test_a_leader_is_overtaken_and_returned_from() -> None:
+    columns = trial(STRONG).columns
+    assert set(columns["event"]) == {0, 1}
+    assert set(columns["driver_intention"].compressed()) == {-1, 0, 1}
+    lanes = columns["lane"]
+    assert lanes[0] == lanes[-1] == 1
+    assert (lanes == 0).any()
+
+
+def test_without_events_the_road_stays_empty() -> None:
+    columns = trial(STRONG._replace(events=False)).columns
+    assert not columns["event"].any()
+    assert np.isnan(columns["lead_distance"]).all()
+    assert not columns["driver_intention"].any()
+    assert (columns["lane"] == 1).all()
+
+
+def test_manual_driving_has_no_torque_and_no_guidance() -> None:
+    columns = trial(MANUAL).columns
+    assert not columns["applied_torque"].any()
+    assert set(columns["mode"]) == {"manual"}
+    for name in GUIDANCE_COLUMNS:
+        values = columns[name]
+        empty = np.ma.getmaskarray(values) | (
+            np.isnan(values) if values.dtype.kind == "f" else False
+        )
+        assert empty.all(), name
+
+
+def test_assisted_driving_fills_every_column() -> None:
+    columns = trial(STRONG).columns
+    filled = set(columns) - {"crossing_probability"}
+    later = {name: columns[name][60:] for name in filled if "lead_" not in name}
+    for name, values in later.items():
+        assert not np.ma.getmaskarray(values).any(), name
+        if values.dtype.kind == "f":
+            assert np.isfinite(values).all(), name
+
+
+def test_guidance_never_passes_the_limit_nor_jumps() -> None:
+    torque = trial(STRONG).columns["applied_torque"]
+    assert np.abs(torque).max() <= 5.0
+    assert np.abs(np.diff(torque)).max() <= 30.0 / 60.0 + 1e-12
+
+
+def test_a_requested_lane_change_starts_whatever_the_driver_wants() -> None:
+    setup = STRONG._replace(
+        driver="hands-off", intention="off", events=False, trigger_times=(12.0, 4.0)
+    )
+    columns = trial(setup).columns
+    time, changing = columns["time"], columns["mode"] == "lane_changing"
+    starts = time[1:][changing[1:] & ~changing[:-1]]
+    np.testing.assert_allclose(starts, [4.0, 12.0], atol=1.0 / 60.0)
+    assert columns["lane"][np.searchsorted(time, 10.0)] == 0
+    assert columns["lane"][-1] == 1
+
+
+def test_the_scripted_intention_is_positive_before_the_drivers_own_crossing() -> None:
+    columns = trial(STRONG).columns
+    positive = columns["crossing_probability"] == 1.0
+    intended = columns["driver_intention"] != 0
+    assert positive.any()
+    assert intended[positive].all()
+
+
+def test_no_intention_is_asked_when_it_is_off() -> None:
+    columns = trial(STRONG._replace(intention="off")).columns
+    assert np.isnan(columns["crossing_probability"]).all()
+    assert not columns["intention"].any()
+
+
+def test_metadata_says_what_was_run() -> None:
+    metadata = trial(STRONG).metadata
+    assert metadata["seed"] == 3
+    assert metadata["condition"] == "strong-normal"
+    assert metadata["driver"] == "virtual, population 1"
+    assert metadata["intention_model_hash"] is None
+    assert metadata["driver_torque_source"] == "simulated"
+    assert len(str(metadata["configuration_hash"])) == 64
+
+
+def test_another_setting_gives_another_configuration_hash() -> None:
+    other = STRONG._replace(hold_time=0.2)
+    hashes = {trial(s).metadata["configuration_hash"] for s in (STRONG, other, MANUAL)}
+    assert len(hashes) == 3
+
+
+def test_a_setup_out_of_range_is_refused_before_anything_runs() -> None:
+    with pytest.raises(ValueError, match="speed is 0; give a number from 5"):
+        simulate_trial(STRONG._replace(speed=0))
