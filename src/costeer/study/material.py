@@ -31,6 +31,9 @@ of the left lane's centre."""
 LANE_TICKS = (-3.5, -1.75, 0.0)
 """Right lane's centre, line between the lanes, left lane's centre [m]."""
 
+HUMAN_DRIVER = "human"
+"""What a record says of its driver if it is a person."""
+
 _RECORD_NAME = re.compile(r"(\d+)-([a-z]+(?:-[a-z]+)?)\.parquet")
 
 
@@ -63,12 +66,15 @@ def read_material(folder: Path) -> StudyMaterial:
     study = read_study(folder)
     trials = _read_table(folder / TRIALS_FILE)
     lane_changes = _read_table(folder / LANE_CHANGES_FILE)
-    records = find_records(folder)
+    tests = study_tests(trials, lane_changes, (*MEASURES, *_workload(trials)))
+    measured = set(zip(trials["participant"], trials["condition"], strict=True))
+    # A record without a row was not believed when the tables were made.
+    records = {k: path for k, path in find_records(folder).items() if k in measured}
     return StudyMaterial(
         study=study,
         trials=trials,
         lane_changes=lane_changes,
-        tests=study_tests(trials, lane_changes, (*MEASURES, *_workload(trials))),
+        tests=tests,
         records=records,
         metadata=tuple(read_record(path, ()).metadata for path in records.values()),
     )
@@ -83,7 +89,7 @@ def _workload(trials: pd.DataFrame) -> list[Measure]:
 
 def _read_table(file: Path) -> pd.DataFrame:
     try:
-        return pd.read_csv(file, float_precision="round_trip")
+        return pd.read_csv(file)
     except FileNotFoundError:
         raise ValueError(
             f"{file.parent} has no {file.name}: not one trial of this study is "
@@ -121,8 +127,8 @@ def strengths_driven(material: StudyMaterial) -> tuple[str, ...]:
 
 
 def is_virtual(material: StudyMaterial) -> bool:
-    """Whether virtual drivers held the wheel, not people."""
-    return any(each["driver"] == "virtual" for each in material.metadata)
+    """Whether no person held the wheel in any trial."""
+    return all(each["driver"] != HUMAN_DRIVER for each in material.metadata)
 
 
 def replan_gain(material: StudyMaterial) -> float:

@@ -18,6 +18,8 @@ from costeer.study.trial_tables import write_csv
 
 FIGURES = "figures"
 REPORT_FILE = "report.html"
+NUM_STEPS = len(FIGURE_NAMES) + 2
+"""How often a report of a finished study tells of a step, about."""
 
 
 class StatisticsFile(NamedTuple):

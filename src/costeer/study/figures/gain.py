@@ -75,7 +75,7 @@ def _description() -> str:
 def _draw_law(axes: Axes, replan_gain: float) -> None:
     time = np.linspace(-1.0, 8.0, 361)
     for (out, back), line in zip(_SWITCHES, _STYLES, strict=True):
-        axes.plot(time, _gain_over(time, out, back), color=INK, linestyle=line)
+        axes.plot(time, gain_over(time, out, back), color=INK, linestyle=line)
     _threshold(axes, replan_gain)
     axes.set_title("Law")
     _note(axes, "Eq. (10)", (0.85, 0.40), "right")
@@ -84,10 +84,16 @@ def _draw_law(axes: Axes, replan_gain: float) -> None:
     _gain_axes(axes, -1.0, 8.0)
 
 
-def _gain_over(
+def gain_over(
     time: NDArray[np.float64], out: float, back: float
 ) -> NDArray[np.float64]:
-    """Gain K_h [-] when the verdict is inconsistent from `out` to `back` [s]."""
+    """Gain K_h [-] when the verdict is inconsistent from `out` to `back`.
+
+    Args:
+        time: Where to tell the gain [s], shape `(time,)`.
+        out: Time of the first inconsistent verdict [s].
+        back: Time of the first consistent one after it [s].
+    """
     law = StrengthParameters()
     at_switch = float(haptic_gain(law, False, back - out, 1.0))
     gain = [

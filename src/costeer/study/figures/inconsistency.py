@@ -44,7 +44,7 @@ def draw(episode: Episode | None) -> Exhibit:
             NAME, TITLE, "No verdict was inconsistent in any trial of this study."
         )
     figure = new_figure(FULL_WIDTH_MM, 150.0)
-    margins = Margins(left=17.0, right=25.0, top=7.0, bottom=10.0, between_rows=3.0)
+    margins = Margins(left=20.0, right=25.0, top=7.0, bottom=10.0, between_rows=3.0)
     grid = panels(figure, len(_HEIGHTS), 1, margins, row_heights=_HEIGHTS)
     axes = [row[0] for row in grid]
     time = episode.columns["time"] - episode.onset

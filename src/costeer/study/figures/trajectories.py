@@ -30,7 +30,7 @@ from costeer.study.quantities import half_width
 NAME = "trajectories"
 TITLE = "Mean trajectories of lane changes"
 
-_TIME = np.linspace(-5.0, 7.0, 121)
+TIME = np.linspace(-5.0, 7.0, 121)
 """Where trajectories are averaged, from the crossing [s]: 10 Hz, smoother than 1 cm."""
 
 _WORDS = {RIGHT: "right", LEFT: "left"}
@@ -113,10 +113,10 @@ def mean_trajectories(material: StudyMaterial) -> dict[Key, Mean]:
 def _aligned(
     time: NDArray[np.float64], position: NDArray[np.float64], crossings: pd.Series
 ) -> NDArray[np.float64]:
-    """Trajectories over `_TIME`, shape `(changes, time)`; NaN outside the record."""
+    """Trajectories over `TIME`, shape `(changes, time)`; NaN outside the record."""
     return np.array(
         [
-            np.interp(_TIME + float(at), time, position, left=np.nan, right=np.nan)
+            np.interp(TIME + float(at), time, position, left=np.nan, right=np.nan)
             for at in crossings
         ]
     )
@@ -137,7 +137,7 @@ def _column_means(rows: NDArray[np.float64]) -> NDArray[np.float64]:
     defined = np.isfinite(rows)
     total = np.where(defined, rows, 0.0).sum(axis=0)
     count = defined.sum(axis=0)
-    means = np.full(len(_TIME), np.nan)
+    means = np.full(len(TIME), np.nan)
     np.divide(total, count, out=means, where=count > 0)
     return means
 
@@ -154,11 +154,11 @@ def _draw_panel(
             STRENGTH_LINES[chosen.strength],
         )
         low, high = mean.position - mean.half_width, mean.position + mean.half_width
-        axes.fill_between(_TIME, low, high, color=colour, alpha=0.22, linewidth=0)
-        axes.plot(_TIME, mean.position, color=colour, linestyle=line, linewidth=1.1)
+        axes.fill_between(TIME, low, high, color=colour, alpha=0.22, linewidth=0)
+        axes.plot(TIME, mean.position, color=colour, linestyle=line, linewidth=1.1)
     axes.axhline(LANE_LINE, color=FAINT, linewidth=0.7, linestyle=(0, (6.0, 4.0)))
     axes.axvline(0.0, color=FAINT, linewidth=0.5, zorder=0)
-    axes.set_xlim(_TIME[0], _TIME[-1])
+    axes.set_xlim(TIME[0], TIME[-1])
     axes.set_ylim(-4.3, 0.8)
     axes.set_yticks(LANE_TICKS)
     axes.set_xticks([-4, -2, 0, 2, 4, 6])

@@ -11,15 +11,15 @@ import math
 from typing import NamedTuple
 
 from costeer.study.conditions import MANUAL
-from costeer.study.material import (
-    StudyMaterial,
-    conditions_driven,
-    pair,
-    strengths_driven,
-    summary,
+from costeer.study.material import StudyMaterial, summary
+from costeer.study.outcome import PUBLISHED, WITHIN
+from costeer.study.quantities import BY_STRENGTH, Quantity
+from costeer.study.reporting.comparisons import (
+    Comparison,
+    compared_levels,
+    comparisons,
+    shown_quantities,
 )
-from costeer.study.outcome import PUBLISHED, WITHIN, PairRow
-from costeer.study.quantities import BY_STRENGTH, QUANTITIES, WORKLOAD, Quantity
 from costeer.study.reporting.numerals import listed, number, signed
 
 _MOST_LISTED = 3
@@ -51,68 +51,14 @@ MEANINGS: dict[str, tuple[str, str]] = {
 """What a lower and a higher value of each measure is in words."""
 
 
-class Comparison(NamedTuple):
-    """One level of a factor against manual driving.
-
-    Attributes:
-        level: A condition or strength.
-        difference: From manual, in shown units; NaN if it is not known.
-        within: -1 significantly lower, +1 higher, 0 neither, None not tested.
-        pooled: The same in the analysis as published.
-    """
-
-    level: str
-    difference: float
-    within: int | None
-    pooled: int | None
-
-
-def shown_quantities(material: StudyMaterial) -> tuple[Quantity, ...]:
-    """Return the measures that were tested, workload only where there is some."""
-    tested = {row.measure for row in material.tests.summaries}
-    return tuple(each for each in (*QUANTITIES, *WORKLOAD) if each.name in tested)
-
-
-def compared_levels(material: StudyMaterial, quantity: Quantity) -> tuple[str, ...]:
-    """Return what is compared with manual: strengths, or conditions."""
-    driven = strengths_driven if quantity.name in BY_STRENGTH else conditions_driven
-    return tuple(name for name in driven(material) if name != MANUAL)
-
-
-def comparisons(material: StudyMaterial, quantity: Quantity) -> list[Comparison]:
-    """Return each level against manual driving under both analyses."""
-    found = []
-    for level in compared_levels(material, quantity):
-        rows = [
-            pair(material, quantity.name, analysis, level, MANUAL)
-            for analysis in (WITHIN, PUBLISHED)
-        ]
-        differences = [row.mean_difference for row in rows if row is not None]
-        known = [each for each in differences if math.isfinite(each)]
-        found.append(
-            Comparison(
-                level=level,
-                difference=known[0] * quantity.factor if known else math.nan,
-                within=_direction(rows[0]),
-                pooled=_direction(rows[1]),
-            )
-        )
-    return found
-
-
-def _direction(row: PairRow | None) -> int | None:
-    """Direction of a significant difference; 0 if it is not significant."""
-    if row is None or not math.isfinite(row.p_corrected):
-        return None
-    if not row.mark:
-        return 0
-    return 1 if row.mean_difference > 0.0 else -1
-
-
 def measure_sentences(material: StudyMaterial, quantity: Quantity) -> str:
     """Say what came out for one measure."""
+    manual = summary(material, quantity.name, "condition", MANUAL)
+    if manual is None or not math.isfinite(manual.mean):
+        return _without_manual(material, quantity)
+    mean = number(manual.mean * quantity.factor, quantity.digits)
+    sentences = [f"{mean} {quantity.unit} in manual driving."]
     found = comparisons(material, quantity)
-    sentences = [_manual_sentence(material, quantity)]
     kinds = dict.fromkeys((each.within, each.pooled) for each in found)
     for kind in sorted(kinds, key=_most_certain_first):
         levels = [each for each in found if (each.within, each.pooled) == kind]
@@ -121,12 +67,18 @@ def measure_sentences(material: StudyMaterial, quantity: Quantity) -> str:
     return " ".join(each for each in sentences if each)
 
 
-def _manual_sentence(material: StudyMaterial, quantity: Quantity) -> str:
-    row = summary(material, quantity.name, "condition", MANUAL)
-    if row is None or not math.isfinite(row.mean):
-        return "There is no manual driving to compare with."
-    mean = number(row.mean * quantity.factor, quantity.digits)
-    return f"{mean} {quantity.unit} in manual driving."
+def _without_manual(material: StudyMaterial, quantity: Quantity) -> str:
+    """Say the means alone where there is no manual driving to compare with."""
+    factor = "strength" if quantity.name in BY_STRENGTH else "condition"
+    means = []
+    for level in compared_levels(material, quantity):
+        row = summary(material, quantity.name, factor, level)
+        if row is not None and math.isfinite(row.mean):
+            mean = number(row.mean * quantity.factor, quantity.digits)
+            means.append(f"{level} {mean} {quantity.unit}")
+    if not means:
+        return "No trial has a value."
+    return f"Means: {listed(means)}. No manual driving to compare with."
 
 
 def _most_certain_first(kind: tuple[int | None, int | None]) -> tuple[int, int]:
@@ -145,19 +97,28 @@ def _group_sentence(
     where = _levels_text(quantity, levels, num_levels)
     if within is None and pooled is None:
         return f"Not tested {where}."
-    if not within and not pooled:
-        return f"No significant difference {where}."
     if within and pooled and within != pooled:
         return f"The two analyses contradict each other {where}."
-    word = quantity.more if (within or pooled) == 1 else quantity.less
-    analysis = (
-        "by both analyses"
-        if within and pooled
-        else "within subjects only"
-        if within
-        else "in the pooled analysis only"
-    )
-    return f"{word.capitalize()} {where}, {analysis}."
+    sign = within or pooled
+    word = quantity.more if sign == 1 else quantity.less
+    outcome = word.capitalize() if sign else "No significant difference"
+    return f"{outcome} {where}{_WHICH_ANALYSIS[_tested(within), _tested(pooled)]}."
+
+
+def _tested(direction: int | None) -> str:
+    return "not tested" if direction is None else "yes" if direction else "no"
+
+
+_WHICH_ANALYSIS = {
+    ("yes", "yes"): ", by both analyses",
+    ("yes", "no"): ", within subjects only",
+    ("no", "yes"): ", in the pooled analysis only",
+    ("no", "no"): "",
+    ("yes", "not tested"): " within subjects (pooled not tested)",
+    ("no", "not tested"): " within subjects (pooled not tested)",
+    ("not tested", "yes"): " in the pooled analysis (within subjects not tested)",
+    ("not tested", "no"): " in the pooled analysis (within subjects not tested)",
+}
 
 
 def _levels_text(quantity: Quantity, levels: list[Comparison], num_levels: int) -> str:
@@ -196,33 +157,40 @@ def _factor_sentence(material: StudyMaterial, quantity: Quantity) -> str:
     verdicts: dict[str, list[str]] = {}
     for effect, name in names.items():
         marks = {
-            row.analysis: bool(row.mark)
+            row.analysis: "yes" if row.mark else "no"
             for row in rows
             if row.effect == effect and math.isfinite(row.p_corrected)
         }
-        verdicts.setdefault(_factor_verdict(marks), []).append(name)
+        if marks:
+            verdicts.setdefault(_factor_verdict(marks), []).append(name)
+    if not verdicts:
+        return ""
     parts = [f"{listed(names)} {verdict}" for verdict, names in verdicts.items()]
     return f"Among the assisted conditions: {'; '.join(parts)}."
 
 
-def _factor_verdict(marks: dict[str, bool]) -> str:
-    if not marks:
-        return "not tested"
-    within, pooled = marks.get(WITHIN, False), marks.get(PUBLISHED, False)
-    if within and pooled:
-        return "significant by both analyses"
-    if within:
-        return "significant within subjects only"
-    return "significant in the pooled analysis only" if pooled else "not significant"
+def _factor_verdict(marks: dict[str, str]) -> str:
+    kind = tuple(marks.get(each, "not tested") for each in (WITHIN, PUBLISHED))
+    outcome = "significant" if "yes" in kind else "not significant"
+    return f"{outcome}{_WHICH_ANALYSIS[kind[0], kind[1]].replace(', ', ' ')}"
 
 
-def meanings(material: StudyMaterial) -> tuple[list[str], list[str]]:
-    """Say what the differences within subjects mean, and which measures show none.
+class Meaning(NamedTuple):
+    """What the tests within subjects come to.
 
-    Returns:
-        A clause for each measure with a significant difference, and the titles of
-        those that were tested without one.
+    Attributes:
+        clauses: One per measure with a significant difference.
+        without: Titles of measures that were tested without one.
+        tested: Whether anything could be tested within subjects.
     """
+
+    clauses: tuple[str, ...]
+    without: tuple[str, ...]
+    tested: bool
+
+
+def meaning(material: StudyMaterial) -> Meaning:
+    """Say what the differences within subjects mean."""
     clauses, without = [], []
     for quantity in shown_quantities(material):
         found = comparisons(material, quantity)
@@ -237,7 +205,8 @@ def meanings(material: StudyMaterial) -> tuple[list[str], list[str]]:
         ]
         if parts:
             clauses.append("; they ".join(parts))
-    return clauses, without
+    tested_any = bool(clauses or without)
+    return Meaning(tuple(clauses), tuple(without), tested_any)
 
 
 def _where(

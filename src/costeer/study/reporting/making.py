@@ -49,6 +49,7 @@ def settings_table(material: StudyMaterial) -> Table:
         header=("Setting", "Value"),
         rows=tuple(rows),
         num_labels=2,
+        prose=True,
     )
 
 
@@ -71,6 +72,7 @@ def records_table(material: StudyMaterial) -> Table:
         header=("Field", "Value"),
         rows=tuple(rows),
         num_labels=2,
+        prose=True,
     )
 
 
@@ -118,6 +120,7 @@ def thresholds_table() -> Table:
         header=("Threshold", "Value"),
         rows=rows,
         num_labels=2,
+        prose=True,
     )
 
 
@@ -144,6 +147,7 @@ def network_table(material: StudyMaterial) -> Table | None:
         header=("Fact", "Value"),
         rows=rows,
         num_labels=2,
+        prose=True,
     )
 
 
@@ -169,6 +173,7 @@ def versions_table() -> Table:
         header=("Program", "Version"),
         rows=tuple(rows),
         num_labels=2,
+        prose=True,
     )
 
 

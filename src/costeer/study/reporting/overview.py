@@ -95,16 +95,30 @@ def drivers(material: StudyMaterial, amount: int) -> str:
     return plural(amount, "virtual driver" if is_virtual(material) else "participant")
 
 
+def subtitle(material: StudyMaterial) -> str:
+    """Return one line on who drove what."""
+    who = drivers(material, int(material.trials["participant"].nunique()))
+    names = conditions_driven(material)
+    if len(names) == len(CONDITION_NAMES):
+        return (
+            f"{who}: manual driving beside guidance of two strengths and three "
+            "lane-change durations."
+        )
+    return f"{who}: {listed(names)}."
+
+
 def _drivers_sentence(material: StudyMaterial) -> str:
     names = conditions_driven(material)
     amount = int(material.trials["participant"].nunique())
     configuration = material.study.configuration
     speed = float(configuration.get("speed", math.nan)) * 3.6
     kilometres = _course(material) / 1000.0
-    conditions = "all seven" if len(names) == len(CONDITION_NAMES) else listed(names)
-    noun = "condition" if len(names) == 1 else "conditions"
+    if len(names) == len(CONDITION_NAMES):
+        where = "all seven conditions"
+    else:
+        where = f"the condition{'s' if len(names) > 1 else ''} {listed(names)}"
     return (
-        f"{drivers(material, amount)} drove {conditions} {noun}, each a course of "
+        f"{drivers(material, amount)} drove {where}, each over a course of "
         f"{number(kilometres, 1)} km at a suggested {number(speed, 0)} km/h."
     )
 
@@ -130,9 +144,7 @@ def _changes_sentence(material: StudyMaterial) -> str:
     fewest = min(parts, key=lambda each: each.completed / each.planned)
     text = (
         f"Of {plural(whole.planned, 'planned lane change')} {whole.completed} were "
-        f"completed ({percent(whole.completed, whole.planned)}); "
-        f"{plural(whole.dropped, 'crossing')} of the line made no lane change "
-        "and dropped out."
+        f"completed ({percent(whole.completed, whole.planned)}); {_dropped(whole)}."
     )
     if fewest.completed == fewest.planned:
         return text
@@ -140,6 +152,13 @@ def _changes_sentence(material: StudyMaterial) -> str:
         f"{text} Fewest were completed in {fewest.name}: {fewest.completed} of "
         f"{fewest.planned}."
     )
+
+
+def _dropped(whole: Tally) -> str:
+    if whole.dropped == 0:
+        return "no crossing of the line had to be dropped"
+    crossings = plural(whole.dropped, "crossing")
+    return f"{crossings} of the line made no lane change and dropped out"
 
 
 def _method_sentence(material: StudyMaterial) -> str:
@@ -172,13 +191,16 @@ def detection_sentence(material: StudyMaterial) -> str:
     return (
         f"{_announced(changes)} Missed: {missed}. "
         f"{plural(false, 'false trigger')} in {number(distance, 0)} km "
-        f"({number(false / distance, 3)} per km), and {early} early by 3 to 5 s."
+        f"({number(false / distance, 3)} per km), and {early} early, "
+        "3 to 5 s before the crossing."
     )
 
 
 def _announced(changes: pd.DataFrame) -> str:
     leads = changes["detection_lead_time"].dropna()
     announced = leads[leads > 0.0]
+    if leads.empty:
+        return "No completed lane change was intended by the driver."
     if announced.empty:
         return f"Of {plural(len(leads), 'intended lane change')} none was announced."
     return (

@@ -10,6 +10,7 @@ from markupsafe import Markup
 
 from costeer.study.material import StudyMaterial, is_virtual
 from costeer.study.reporting import findings, overview
+from costeer.study.reporting.comparisons import shown_quantities
 from costeer.study.reporting.inline import inline_svg
 from costeer.study.reporting.sections import Picture, Section, page_sections
 from costeer.study.reporting.tables import Table
@@ -46,18 +47,14 @@ def render(material: StudyMaterial, pictures: Sequence[Picture]) -> str:
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    number = int(material.trials["participant"].nunique())
-    clauses, without = findings.meanings(material)
     sections = page_sections(material, {each.exhibit.name: each for each in pictures})
     return environment.get_template("report.html").render(
         css=Markup(loader.get_source(environment, "report.css")[0]),
         virtual=is_virtual(material),
-        drivers=overview.drivers(material, number),
-        num_participants=number,
+        subtitle=overview.subtitle(material),
         run=overview.run_sentences(material),
         outcomes=_outcomes(material),
-        clauses=clauses,
-        without=without,
+        meaning=findings.meaning(material),
         sections=_numbered(sections),
     )
 
@@ -66,7 +63,7 @@ def _outcomes(material: StudyMaterial) -> list[tuple[str, str]]:
     """Heading and sentences of each point of what came out."""
     points = [
         (each.title, findings.measure_sentences(material, each))
-        for each in findings.shown_quantities(material)
+        for each in shown_quantities(material)
     ]
     points.append(("Intention", overview.detection_sentence(material)))
     points.append(("Inconsistencies", overview.inconsistency_sentence(material)))

@@ -9,7 +9,7 @@ from costeer.study.figures.exhibit import Exhibit
 from costeer.study.material import StudyMaterial, is_virtual
 from costeer.study.quantities import BY_STRENGTH, WORKLOAD
 from costeer.study.reporting import event_tables, making, statistics_tables, tables
-from costeer.study.reporting.findings import shown_quantities
+from costeer.study.reporting.comparisons import shown_quantities
 from costeer.study.reporting.tables import Table
 
 

@@ -7,7 +7,7 @@ import math
 from costeer.study.material import StudyMaterial
 from costeer.study.outcome import MIXED, PUBLISHED, WITHIN, EffectRow, PairRow
 from costeer.study.quantities import Quantity
-from costeer.study.reporting.findings import shown_quantities
+from costeer.study.reporting.comparisons import shown_quantities
 from costeer.study.reporting.numerals import (
     NOTHING,
     degrees_of_freedom,
@@ -166,4 +166,5 @@ def dropped_table(material: StudyMaterial) -> Table | None:
         header=("Measure", "Participant", "Cell", "Reason"),
         rows=tuple(rows),
         num_labels=4,
+        prose=True,
     )

@@ -17,7 +17,7 @@ from costeer.study.material import (
 )
 from costeer.study.outcome import PUBLISHED, WITHIN
 from costeer.study.quantities import BY_STRENGTH, DEG, Quantity
-from costeer.study.reporting.findings import shown_quantities
+from costeer.study.reporting.comparisons import shown_quantities
 from costeer.study.reporting.numerals import (
     NOTHING,
     count,
@@ -36,6 +36,7 @@ class Table(NamedTuple):
         header: Names of the columns.
         rows: Text of the cells; a line break in a cell is shown as one.
         num_labels: Leading columns that are words, not numbers.
+        prose: Whether cells may be broken into lines anywhere.
     """
 
     name: str
@@ -44,6 +45,7 @@ class Table(NamedTuple):
     header: tuple[str, ...]
     rows: tuple[tuple[str, ...], ...]
     num_labels: int = 1
+    prose: bool = False
 
 
 def measures_table(material: StudyMaterial) -> Table:

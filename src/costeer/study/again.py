@@ -1,0 +1,47 @@
+"""Everything of a study but its records, made again: tables, tests, figures, report."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+from costeer.loop.record import read_record
+from costeer.study.folder import locked, read_study
+from costeer.study.material import HUMAN_DRIVER, find_records
+from costeer.study.report import write_report
+from costeer.study.run import remake_tables
+
+
+def remake_report(folder: Path, tell: Callable[[str], None]) -> Path:
+    """Make tables, tests, figures and `report.html` of a study again.
+
+    The tables of a study with people stay as they are: they hold answers that no
+    record knows. Those of virtual drivers are measured again from the records.
+
+    Args:
+        folder: Of the study.
+        tell: Called with a few words before each step.
+
+    Returns:
+        Path of `report.html`.
+
+    Raises:
+        ValueError: If it is no study, in use, or has no trial that can be read.
+        OSError: If a file cannot be read or written.
+    """
+    read_study(folder)
+    if not holds_human_trials(folder):
+        tell("measures")
+        remake_tables(folder)
+    with locked(folder):
+        return write_report(folder, tell)
+
+
+def holds_human_trials(folder: Path) -> bool:
+    """Whether the first record of the folder that can be read is a person's."""
+    for path in find_records(folder).values():
+        try:
+            return read_record(path, ()).metadata["driver"] == HUMAN_DRIVER
+        except ValueError:
+            continue  # cut short by a crash: the next one tells
+    return False

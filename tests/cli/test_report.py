@@ -1,0 +1,93 @@
+"""`costeer report` makes everything of a study again but its records."""
+
+from __future__ import annotations
+
+import shutil
+from pathlib import Path
+
+import pytest
+
+from costeer.cli import main
+from costeer.loop.record import read_record, write_record
+from costeer.study.configuration import StudySettings
+from costeer.study.folder import locked
+from costeer.study.material import HUMAN_DRIVER, find_records
+from costeer.study.run import run_study
+from tests.study.fakes import contents, made_up
+
+TINY = StudySettings(
+    participants=1,
+    conditions=("manual", "weak-gentle"),
+    intention="scripted",
+    length=1800.0,
+)
+
+
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A study with its report."""
+    folder = tmp_path_factory.mktemp("whole") / "study"
+    run_study(folder, TINY, jobs=1, simulate=made_up)
+    return folder
+
+
+@pytest.fixture
+def bare(whole: Path, tmp_path: Path) -> Path:
+    """The same with nothing but settings and records."""
+    (tmp_path / "study").mkdir()
+    shutil.copy(whole / "study.yaml", tmp_path / "study")
+    shutil.copytree(whole / "records", tmp_path / "study" / "records")
+    return tmp_path / "study"
+
+
+def test_records_alone_bring_back_every_byte(
+    whole: Path, bare: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["report", str(bare)]) == 0
+    assert contents(bare) == contents(whole)
+    shown = capsys.readouterr()
+    assert shown.out == f"{bare / 'report.html'}\n"
+    assert "report: " in shown.err
+
+
+def test_a_half_written_record_is_not_believed(bare: Path) -> None:
+    record = bare / "records" / "01-manual.parquet"
+    record.write_bytes(record.read_bytes()[:1000])
+    assert main(["report", str(bare)]) == 0
+    page = (bare / "report.html").read_text("utf-8")
+    assert "not complete: 1 of 2 trials are there" in page
+
+
+def test_answers_of_people_are_kept(whole: Path, tmp_path: Path) -> None:
+    folder = tmp_path / "people"
+    shutil.copytree(whole, folder)
+    for path in find_records(folder).values():
+        record = read_record(path)
+        metadata = {**record.metadata, "driver": HUMAN_DRIVER}
+        write_record(path, record._replace(metadata=metadata))
+    header, *rows = (folder / "trials.csv").read_text("utf-8").splitlines()
+    text = "\n".join([f"{header},tlx_raw", *(f"{row},55" for row in rows)])
+    (folder / "trials.csv").write_text(text, encoding="utf-8")
+    assert main(["report", str(folder)]) == 0
+    assert (folder / "trials.csv").read_text("utf-8") == text
+    assert (folder / "figures" / "tlx-raw.svg").exists()
+
+
+@pytest.mark.parametrize(
+    ("name", "reason"),
+    [("", "not a study folder: it has no study.yaml"), ("none", "not a study folder")],
+)
+def test_a_folder_that_is_no_study_is_refused_in_one_line(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], name: str, reason: str
+) -> None:
+    assert main(["report", str(tmp_path / name)]) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert reason in line
+
+
+def test_a_study_that_is_running_is_left_alone(
+    bare: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    with locked(bare):
+        assert main(["report", str(bare)]) == 2
+    assert "in use by another costeer" in capsys.readouterr().err

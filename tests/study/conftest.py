@@ -1,0 +1,32 @@
+"""Studies of made-up trials, each run once for all tests that only look at them."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from costeer.study.conditions import CONDITION_NAMES
+from costeer.study.configuration import StudySettings
+from costeer.study.material import StudyMaterial, read_material
+from costeer.study.run import run_study
+from tests.study.fakes import made_up
+
+# 3800 m hold two overtaking events, hence four lane changes a trial.
+REPORTED = StudySettings(
+    participants=3, conditions=CONDITION_NAMES, intention="scripted", length=3800.0
+)
+
+
+@pytest.fixture(scope="session")
+def study_folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """All conditions, three drivers, tables and records but no report; read only."""
+    folder = tmp_path_factory.mktemp("reported") / "study"
+    run_study(folder, REPORTED, jobs=1, report=None, simulate=made_up)
+    return folder
+
+
+@pytest.fixture(scope="session")
+def material(study_folder: Path) -> StudyMaterial:
+    """What the figures and the report are made from."""
+    return read_material(study_folder)

@@ -1,0 +1,236 @@
+"""Figures that one would print: labelled, legible, whole."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+import pytest
+from matplotlib.axes import Axes
+from matplotlib.axis import Axis
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.colors import to_rgb
+from matplotlib.text import Text
+from matplotlib.ticker import FixedFormatter, FuncFormatter
+
+from costeer.study.conditions import CONDITION_NAMES
+from costeer.study.figures import bars, detection, signals, trajectories, workload
+from costeer.study.figures.catalogue import FIGURE_NAMES, draw_figures
+from costeer.study.figures.exhibit import Exhibit
+from costeer.study.figures.style import (
+    COLUMN_WIDTH_MM,
+    FULL_WIDTH_MM,
+    MM_PER_INCH,
+    SMALL,
+    condition_colour,
+    styled,
+    svg_text,
+)
+from costeer.study.material import HUMAN_DRIVER, StudyMaterial
+from costeer.study.quantities import QUANTITIES, WORKLOAD
+
+UNIT = re.compile(r"\[[^\]]+\]")
+
+
+@pytest.fixture(scope="module")
+def exhibits(material: StudyMaterial) -> Iterator[list[Exhibit]]:
+    with styled():
+        yield list(draw_figures(material))
+
+
+def drawn(exhibits: Sequence[Exhibit]) -> list[Exhibit]:
+    return [each for each in exhibits if each.figure is not None]
+
+
+def panels(exhibit: Exhibit) -> list[Axes]:
+    assert exhibit.figure is not None
+    return list(exhibit.figure.axes)
+
+
+def shows_numbers(axis: Axis, labelled: str) -> bool:
+    """Whether an axis has numbers at its ticks, not words and not nothing."""
+    words = isinstance(axis.get_major_formatter(), (FixedFormatter, FuncFormatter))
+    return bool(axis.get_tick_params()[labelled]) and not words
+
+
+def test_everything_the_paper_shows_is_drawn_but_workload(
+    exhibits: list[Exhibit],
+) -> None:
+    workloads = {bars.file_name(each) for each in WORKLOAD}
+    assert {each.name for each in drawn(exhibits)} == set(FIGURE_NAMES) - workloads
+
+
+def test_every_axis_with_numbers_names_its_unit(exhibits: list[Exhibit]) -> None:
+    for exhibit in drawn(exhibits):
+        for panel in panels(exhibit):
+            if shows_numbers(panel.xaxis, "labelbottom"):
+                assert UNIT.search(panel.get_xlabel()), (exhibit.name, "x")
+            if shows_numbers(panel.yaxis, "labelleft"):
+                assert UNIT.search(panel.get_ylabel()), (exhibit.name, "y")
+
+
+def test_every_figure_has_the_width_of_a_column_or_a_page(
+    exhibits: list[Exhibit],
+) -> None:
+    for exhibit in drawn(exhibits):
+        assert exhibit.figure is not None
+        width = exhibit.figure.get_figwidth() * MM_PER_INCH
+        assert min(abs(width - w) for w in (COLUMN_WIDTH_MM, FULL_WIDTH_MM)) < 1e-6
+
+
+def texts(exhibit: Exhibit) -> list[Text]:
+    assert exhibit.figure is not None
+    found = exhibit.figure.findobj(Text)
+    return [each for each in found if each.get_visible() and each.get_text()]
+
+
+def test_no_text_is_smaller_than_can_be_read(exhibits: list[Exhibit]) -> None:
+    for exhibit in drawn(exhibits):
+        assert min(each.get_fontsize() for each in texts(exhibit)) >= SMALL
+
+
+def test_no_text_leaves_its_figure(exhibits: list[Exhibit]) -> None:
+    for exhibit in drawn(exhibits):
+        assert exhibit.figure is not None
+        canvas = FigureCanvasAgg(exhibit.figure)
+        canvas.draw()
+        whole = exhibit.figure.bbox
+        for text in texts(exhibit):
+            box = text.get_window_extent(canvas.get_renderer())
+            inside = box.x0 >= -1 and box.x1 <= whole.x1 + 1  # one pixel of rounding
+            inside &= box.y0 >= -1 and box.y1 <= whole.y1 + 1
+            # Ticks beyond the limits keep their text but are not drawn.
+            assert inside or text not in shown_texts(exhibit), text.get_text()
+
+
+def shown_texts(exhibit: Exhibit) -> list[Text]:
+    """All texts but those of ticks outside the range of their axis."""
+    hidden: list[Text] = []
+    for panel in panels(exhibit):
+        for axis, limits in (
+            (panel.xaxis, panel.get_xlim),
+            (panel.yaxis, panel.get_ylim),
+        ):
+            low, high = sorted(limits())
+            for tick in axis.get_major_ticks():
+                if not low - 1e-9 <= tick.get_loc() <= high + 1e-9:
+                    hidden += [tick.label1, tick.label2]
+    return [each for each in texts(exhibit) if each not in hidden]
+
+
+def test_every_figure_is_described_for_those_who_do_not_see_it(
+    exhibits: list[Exhibit],
+) -> None:
+    for exhibit in drawn(exhibits):
+        assert exhibit.title
+        assert exhibit.caption.endswith(".")
+        assert exhibit.description.endswith(".")
+
+
+def test_a_style_of_the_user_changes_nothing(material: StudyMaterial) -> None:
+    import matplotlib as mpl
+
+    def text() -> str:
+        with styled():
+            exhibit = bars.draw(material, QUANTITIES[0])
+            assert exhibit.figure is not None
+            return svg_text(exhibit.figure, exhibit.name, exhibit.title)
+
+    plain = text()
+    with mpl.rc_context({"font.size": 20.0, "axes.facecolor": "red"}):
+        assert text() == plain
+
+
+def test_no_two_conditions_share_a_colour_nor_a_grey() -> None:
+    # Rec. 709 luma; 0.02 is about the least step that print keeps apart.
+    colours = [to_rgb(condition_colour(name)) for name in CONDITION_NAMES]
+    assert len(set(colours)) == len(CONDITION_NAMES)
+    for strength in ("strong", "weak"):
+        shades = [
+            np.dot((0.2126, 0.7152, 0.0722), to_rgb(condition_colour(name)))
+            for name in CONDITION_NAMES
+            if name.startswith(strength)
+        ]
+        assert np.all(np.diff(shades) > 0.02)
+
+
+def test_every_bar_stands_on_zero_and_is_as_high_as_the_mean(
+    material: StudyMaterial,
+) -> None:
+    for quantity in QUANTITIES:
+        with styled():
+            panel = panels(bars.draw(material, quantity))[-1]
+        table = getattr(material, quantity.table)
+        own = table.groupby(["condition", "participant"])[quantity.name].mean()
+        means = own.groupby(level=0).mean() * quantity.factor
+        heights = [bar.get_height() for bar in panel.patches]
+        assert heights == pytest.approx([means[name] for name in CONDITION_NAMES])
+        assert panel.get_ylim()[0] == 0.0
+
+
+def test_trajectories_meet_the_line_at_the_crossing(material: StudyMaterial) -> None:
+    means = trajectories.mean_trajectories(material)
+    assert set(means) == {(name, way) for name in CONDITION_NAMES for way in (-1, 1)}
+    for mean in means.values():
+        # Linear between two of the 10 Hz places, in which the car curves by 1 cm.
+        assert np.interp(0.0, trajectories.TIME, mean.position) == pytest.approx(
+            -1.75, abs=0.01
+        )
+
+
+def test_trajectories_count_every_lane_change(material: StudyMaterial) -> None:
+    means = trajectories.mean_trajectories(material)
+    assert sum(mean.changes for mean in means.values()) == len(material.lane_changes)
+
+
+def test_the_band_is_the_interval_of_participants_means(
+    material: StudyMaterial,
+) -> None:
+    mean = trajectories.mean_trajectories(material)["manual", -1]
+    assert mean.participants == 3
+    assert np.all(mean.half_width >= 0.0)
+
+
+def test_missed_lane_changes_count_in_the_lead_times(
+    material: StudyMaterial,
+) -> None:
+    missed = material.lane_changes.assign(detection_lead_time=0.0)
+    with styled():
+        exhibit = detection.draw(material._replace(lane_changes=missed))
+    for line in panels(exhibit)[0].get_lines()[:3]:
+        assert np.all(np.asarray(line.get_ydata()) == 0.0)
+
+
+def test_virtual_drivers_have_no_workload(material: StudyMaterial) -> None:
+    (exhibit,) = workload.draw(material)
+    assert exhibit.figure is None
+    assert "people only" in exhibit.missing
+
+
+def as_people(material: StudyMaterial) -> StudyMaterial:
+    metadata = tuple({**each, "driver": HUMAN_DRIVER} for each in material.metadata)
+    return material._replace(metadata=metadata)
+
+
+def test_people_without_answers_have_no_workload_either(
+    material: StudyMaterial,
+) -> None:
+    (exhibit,) = workload.draw(as_people(material))
+    assert "tlx_raw" in exhibit.missing
+
+
+def test_without_triggers_detection_is_not_drawn(material: StudyMaterial) -> None:
+    trials = material.trials.drop(columns="false_triggers_per_km")
+    changes = material.lane_changes.drop(columns="detection_lead_time")
+    without = material._replace(trials=trials, lane_changes=changes)
+    assert detection.draw(without).missing
+
+
+def test_the_participant_shown_is_the_first_with_most_conditions(
+    material: StudyMaterial,
+) -> None:
+    records = {k: v for k, v in material.records.items() if k != (1, "strong-rapid")}
+    with styled():
+        exhibit = signals.draw(material._replace(records=records), "strong")
+    assert exhibit.caption.startswith("Participant 2,")
