@@ -66,3 +66,13 @@ def test_pushing_leaves_the_old_window_as_it_was() -> None:
 def test_a_constant_signal_leaves_no_rounding_however_long_it_lasts() -> None:
     window = filled(np.concatenate([[1e9] * 60, [0.5] * 600]), 60)
     assert mean(window) == 0.5  # a running sum would keep a rest of the 1e9
+
+
+def test_a_batch_of_signals_has_the_means_of_its_members() -> None:
+    signals = np.random.default_rng(0).normal(size=(10, 4))
+    batch = empty_window(6)
+    for row in signals:
+        batch = push(batch, row)
+    members = [mean(filled(signal, 6)) for signal in signals.T]
+    assert np.asarray(mean(batch)).tolist() == members
+    assert full(batch)

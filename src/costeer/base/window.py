@@ -20,7 +20,8 @@ class Window(NamedTuple):
     """The last samples of one signal, in a ring.
 
     Attributes:
-        values: Samples, shape `(length,)`; zeros until written.
+        values: Samples, shape `(*batch, length)`; zeros until written. A batch
+            appears when one is pushed; compiled code knows none.
         next_index: Where the next sample goes [-].
         num_samples: How many have been written, at most `length` [-].
     """
@@ -39,8 +40,10 @@ def empty_window(length: int) -> Window:
 def _with_value(values: Any, index: Any, value: Any) -> Any:
     """Return `values` with one sample replaced; a copy in Python, traced in JAX."""
     if isinstance(values, np.ndarray) and isinstance(index, (int, np.integer)):
+        if isinstance(value, np.ndarray) and values.ndim <= value.ndim:
+            values = np.broadcast_to(values, (*value.shape, values.shape[-1]))
         values = values.copy()
-        values[index] = value
+        values[..., index] = value
         return values
     import jax.numpy as jnp
 
@@ -56,10 +59,27 @@ def _with_value_in_place(values: Any, index: Any, value: Any) -> Any:
     return implementation
 
 
+def _total(values: Any) -> Any:
+    """Sum over the samples."""
+    return values.sum(axis=-1)
+
+
+@overload(_total, strict=False)
+def _total_compiled(values: Any) -> Any:
+    return lambda values: values.sum()
+
+
+@compiled
+def _length(window: Window) -> int:
+    """How many samples the window holds when full."""
+    length: int = window.values.shape[-1]
+    return length
+
+
 @compiled
 def push(window: Window, value: Real) -> Window:
     """Return the window after one more sample; the oldest leaves when it is full."""
-    length = len(window.values)
+    length = _length(window)
     num_samples = window.num_samples + (window.num_samples < length)
     return Window(
         values=_with_value(window.values, window.next_index, value),
@@ -71,11 +91,11 @@ def push(window: Window, value: Real) -> Window:
 @compiled
 def full(window: Window) -> Flag:
     """Whether the window has as many samples as it holds."""
-    return window.num_samples >= len(window.values)
+    return window.num_samples >= _length(window)
 
 
 @compiled
 def mean(window: Window) -> Real:
     """Mean of a full window; summed anew each time, so that no rounding drifts."""
-    total: Real = window.values.sum()
-    return total / len(window.values)
+    total: Real = _total(window.values)
+    return total / _length(window)

@@ -83,7 +83,7 @@ def step(
     """
     wanted = applied_torque(parameters, haptic_gain, instructed_torque)
     rate = xp.select(
-        xp.isfinite(instructed_torque),
+        xp.isfinite(haptic_gain * instructed_torque),
         parameters.torque_rate_limit,
         parameters.fault_rate_limit,
     )

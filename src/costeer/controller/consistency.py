@@ -63,6 +63,16 @@ def torque_agreement(instructed_torque: Real, driver_torque: Real) -> Real:
 
 
 @compiled
+def power(torque: Real, heading_error_rate: Real) -> Real:
+    """Product whose mean is a pseudo-work [W]; nothing where it is not finite.
+
+    A NaN in the window would blind the verdict for as long as it stays there.
+    """
+    product = torque * heading_error_rate
+    return xp.select(xp.isfinite(product), product, 0.0)
+
+
+@compiled
 def is_consistent(
     parameters: ConsistencyParameters,
     guidance_pseudo_work: Real,
@@ -102,8 +112,10 @@ def step(
         heading_error_rate: e_theta' [rad/s].
         dt: Control step [s].
     """
-    guidance_power = push(state.guidance_power, instructed_torque * heading_error_rate)
-    driver_power = push(state.driver_power, driver_torque * heading_error_rate)
+    guidance_power = push(
+        state.guidance_power, power(instructed_torque, heading_error_rate)
+    )
+    driver_power = push(state.driver_power, power(driver_torque, heading_error_rate))
     ready = full(guidance_power)
     guidance_work = xp.select(ready, mean(guidance_power), math.nan)
     driver_work = xp.select(ready, mean(driver_power), math.nan)

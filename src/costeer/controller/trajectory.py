@@ -99,6 +99,16 @@ def _select_path(flag: Flag, if_true: Quintic, if_false: Quintic) -> Quintic:
 
 
 @compiled
+def is_known(measurement: Measurement) -> Flag:
+    """Whether all that a plan is made of is finite: a lost sample changes no plan."""
+    place = measurement.longitudinal_position + measurement.lateral_position
+    motion = measurement.longitudinal_velocity + measurement.yaw_rate
+    return xp.isfinite(
+        place + motion + measurement.yaw_angle + measurement.lane + measurement.side
+    )
+
+
+@compiled
 def choose_mode(
     parameters: TrajectoryParameters,
     state: TrajectoryState,
@@ -119,12 +129,14 @@ def choose_mode(
         consistent: Verdict of the step before.
         replan: Whether the step before called for a new plan.
     """
+    known = is_known(measurement)
     changing = state.mode == LANE_CHANGING
     travelled = measurement.longitudinal_position - state.path.start
-    ended = changing & (travelled >= state.path.length)
-    to_keeping = ended | replan
+    ended = known & changing & (travelled >= state.path.length)
+    to_keeping = ended | (known & replan)
     keeping = to_keeping | xp.logical_not(changing)
-    started = keeping & intention.detected & consistent & xp.logical_not(to_keeping)
+    wanted = known & intention.detected & consistent
+    started = keeping & wanted & xp.logical_not(to_keeping)
     kept_lane = xp.select(to_keeping, measurement.lane, state.lane)
     lane = xp.select(started, measurement.lane + intention.side, kept_lane)
     new_path = plan_path(parameters, road, measurement, lane)
