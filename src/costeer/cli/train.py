@@ -88,8 +88,11 @@ def train(
 
 def _source(files: list[Path] | None, simulate: int) -> str:
     """What the network learned from, in words."""
-    parts = [f"{simulate} simulated manual drivers"] if simulate else []
-    parts += [f"{len(files)} files"] if files else []
+    from costeer.drivers.population import POPULATION_VERSION
+
+    kind = f"simulated manual drivers of population {POPULATION_VERSION}"
+    parts = [f"{simulate} {kind}"] if simulate else []
+    parts += ["files " + ", ".join(file.name for file in files)] if files else []
     return " and ".join(parts)
 
 
