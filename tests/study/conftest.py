@@ -12,9 +12,9 @@ from costeer.study.material import StudyMaterial, read_material
 from costeer.study.run import run_study
 from tests.study.fakes import made_up
 
-# 3800 m hold two overtaking events, hence four lane changes a trial.
+# 1800 m hold one overtaking event, hence two lane changes a trial.
 REPORTED = StudySettings(
-    participants=3, conditions=CONDITION_NAMES, intention="scripted", length=3800.0
+    participants=3, conditions=CONDITION_NAMES, intention="scripted", length=1800.0
 )
 
 

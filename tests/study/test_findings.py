@@ -131,3 +131,32 @@ def test_doubt_about_some_conditions_names_them(material: StudyMaterial) -> None
 
 def test_without_a_test_nothing_is_meant(material: StudyMaterial) -> None:
     assert not meaning(told(material, {}, {})).tested
+
+
+def test_no_value_at_all_is_said(material: StudyMaterial) -> None:
+    none = material._replace(tests=StudyTests((), (), (), ()))
+    assert measure_sentences(none, OVERSHOOT) == "No trial has a value."
+
+
+def test_factors_among_the_assisted_conditions_are_judged_by_both_analyses(
+    material: StudyMaterial,
+) -> None:
+    rows = [
+        row._replace(p_corrected=0.001, mark="**" if row.analysis == WITHIN else "")
+        for row in material.tests.tests
+        if row.measure == "overshoot" and row.effect in ("strength", "change_duration")
+    ]
+    study = told(material, alike(0.1, ""), alike(0.1, ""))
+    study = study._replace(tests=study.tests._replace(tests=tuple(rows)))
+    assert after_manual(study).endswith(
+        "Among the assisted conditions: strength and planned duration significant "
+        "within subjects only."
+    )
+
+
+def test_many_but_not_all_conditions_share_a_range(material: StudyMaterial) -> None:
+    found = alike(-0.1, "***") | {"weak-gentle": (-0.01, "")}
+    assert after_manual(told(material, found, found)).startswith(
+        "Lower with strong-rapid, strong-normal, strong-gentle, weak-rapid and "
+        "weak-normal (−0.100 to −0.100 m), by both analyses."
+    )

@@ -53,7 +53,11 @@ def test_one_participant_is_reported_but_nothing_concluded(
 
 
 def test_manual_alone_is_reported(study_folder: Path, tmp_path: Path) -> None:
-    text = words(part(study_folder, tmp_path / "m", lambda _, name: name == "manual"))
+    folder = part(study_folder, tmp_path / "m", lambda _, name: name == "manual")
+    (folder / "figures").mkdir()
+    (folder / "figures" / "signals-weak.svg").write_text("of an earlier report")
+    text = words(folder)
+    assert not (folder / "figures" / "signals-weak.svg").exists()
     assert "drove the condition manual" in text
     assert "No verdict was inconsistent" in text
     assert "No trial with strong guidance" in text

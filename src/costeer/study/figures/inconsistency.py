@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -215,6 +215,8 @@ def _common(axes: list[Axes], time: NDArray[np.float64], episode: Episode) -> No
 
 
 def _mark(axes: list[Axes], moment: float, name: str) -> None:
+    # Trigger and onset may be close: their words lean away from each other.
+    align: Literal["left", "right"] = "right" if name == "trigger" else "left"
     for panel in axes:
         panel.axvline(moment, color=FAINT, linewidth=0.7, zorder=0)
     axes[0].annotate(
@@ -224,5 +226,5 @@ def _mark(axes: list[Axes], moment: float, name: str) -> None:
         xytext=(0.0, 2.0),
         textcoords="offset points",
         fontsize=SMALL,
-        ha="center",
+        ha=align,
     )

@@ -5,9 +5,7 @@ from __future__ import annotations
 import json
 import platform
 from importlib.metadata import version
-from typing import Any
 
-from costeer.intention.weights import load_weights
 from costeer.study.definitions import DEFAULTS
 from costeer.study.material import StudyMaterial
 from costeer.study.quantities import DEG
@@ -126,40 +124,6 @@ def thresholds_table() -> Table:
 
 def _deg(name: str) -> str:
     return number(float(getattr(DEFAULTS, name)) * DEG, 1)
-
-
-def network_table(material: StudyMaterial) -> Table | None:
-    """Return what is known of the network's training; None without its weights."""
-    wanted = material.study.configuration.get("intention_model_hash")
-    if not wanted:
-        return None
-    try:
-        network = load_weights()
-    except (OSError, ValueError):
-        return None
-    if network.hash != wanted:
-        return None
-    rows = tuple((name, _text(value)) for name, value in _flat(network.facts))
-    return Table(
-        name="network",
-        title="The intention network, as its file describes it",
-        note="Results on the drivers that its training held out.",
-        header=("Fact", "Value"),
-        rows=rows,
-        num_labels=2,
-        prose=True,
-    )
-
-
-def _flat(facts: dict[str, Any], before: str = "") -> list[tuple[str, object]]:
-    """Nested facts with dotted names; Any: JSON."""
-    flat: list[tuple[str, object]] = []
-    for name, value in facts.items():
-        if isinstance(value, dict):
-            flat += _flat(value, f"{before}{name}.")
-        else:
-            flat.append((f"{before}{name}", value))
-    return flat
 
 
 def versions_table() -> Table:

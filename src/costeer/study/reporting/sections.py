@@ -10,6 +10,7 @@ from costeer.study.material import StudyMaterial, is_virtual
 from costeer.study.quantities import BY_STRENGTH, WORKLOAD
 from costeer.study.reporting import event_tables, making, statistics_tables, tables
 from costeer.study.reporting.comparisons import shown_quantities
+from costeer.study.reporting.network import network_table
 from costeer.study.reporting.tables import Table
 
 
@@ -107,7 +108,7 @@ def _effort(material: StudyMaterial, pictures: Mapping[str, Picture]) -> Section
 
 
 def _intention(material: StudyMaterial, pictures: Mapping[str, Picture]) -> Section:
-    network = making.network_table(material)
+    network = network_table(material)
     items = (*_chosen(pictures, ("detection",)), event_tables.detection_table(material))
     items += (network,) if network else ()
     text = _INTENTION_TEXTS.get(

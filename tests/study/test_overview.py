@@ -1,0 +1,101 @@
+"""How the study went is said with the numbers of its tables."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from costeer.study.conditions import CONDITION_NAMES
+from costeer.study.material import StudyMaterial
+from costeer.study.reporting import overview
+from costeer.study.reporting.overview import planned_changes, tallies, total
+
+
+@pytest.mark.parametrize(
+    ("length", "planned"),
+    [(8000.0, 8), (1800.0, 2), (1000.0, 0), (20_000.0, 8), (math.nan, 0)],
+)
+def test_two_lane_changes_are_planned_for_each_event(
+    length: float, planned: int
+) -> None:
+    assert planned_changes(length) == planned
+
+
+def test_the_whole_is_the_sum_of_its_conditions(material: StudyMaterial) -> None:
+    parts = tallies(material)
+    assert [each.name for each in parts] == list(CONDITION_NAMES)
+    whole = total(parts)
+    assert (whole.trials, whole.planned) == (21, 42)
+    assert whole.completed == len(material.lane_changes)
+
+
+def with_trials(material: StudyMaterial, **columns: object) -> StudyMaterial:
+    return material._replace(trials=material.trials.assign(**columns))
+
+
+def with_settings(material: StudyMaterial, **settings: object) -> StudyMaterial:
+    configuration = {**material.study.configuration, **settings}
+    return material._replace(study=material.study._replace(configuration=configuration))
+
+
+def test_the_condition_with_most_missing_is_named(material: StudyMaterial) -> None:
+    lost = material.trials["num_lane_changes"].mask(
+        material.trials["condition"] == "weak-gentle", 1.0
+    )
+    study = with_trials(material, num_lane_changes=lost, num_dropped_changes=1)
+    (sentence,) = [each for each in overview.run_sentences(study) if "planned" in each]
+    assert sentence == (
+        "Of 42 planned lane changes 39 were completed (92.9 %); 21 crossings of the "
+        "line made no lane change and dropped out. Fewest were completed in "
+        "weak-gentle: 3 of 6."
+    )
+
+
+def test_a_short_course_has_no_lane_change_planned(material: StudyMaterial) -> None:
+    text = " ".join(overview.run_sentences(with_settings(material, length=900.0)))
+    assert "too short for an overtaking event" in text
+
+
+def test_the_network_is_named_by_its_hash(material: StudyMaterial) -> None:
+    study = with_settings(
+        material, intention="network", intention_model_hash="0123456789abcdef"
+    )
+    text = " ".join(overview.run_sentences(study))
+    assert "read by the network with weights 0123456789ab" in text
+
+
+def test_without_triggers_nothing_is_judged(material: StudyMaterial) -> None:
+    study = with_trials(material, num_false_triggers=math.nan)
+    assert overview.detection_sentence(study) == "No trial has triggers to judge."
+
+
+def test_when_every_lane_change_is_missed_it_is_said(material: StudyMaterial) -> None:
+    changes = material.lane_changes.assign(detection_lead_time=0.0)
+    text = overview.detection_sentence(material._replace(lane_changes=changes))
+    assert text.startswith("Of 42 intended lane changes none was announced.")
+
+
+def test_false_triggers_are_told_per_kilometre(material: StudyMaterial) -> None:
+    study = with_trials(material, num_false_triggers=2, distance=1000.0)
+    assert "42 false triggers in 21 km (2.000 per km)" in overview.detection_sentence(
+        study
+    )
+
+
+def test_no_inconsistency_needs_no_more_words(material: StudyMaterial) -> None:
+    study = with_trials(material, num_inconsistencies=0)
+    assert overview.inconsistency_sentence(study) == (
+        "0 inconsistencies in 21 assisted trials with 42 lane changes."
+    )
+
+
+def test_means_per_trial_weigh_as_many_inconsistencies_as_they_hold(
+    material: StudyMaterial,
+) -> None:
+    trials = material.trials.iloc[:2].assign(
+        num_inconsistencies=[1, 3], recovery_time=[2.0, 4.0]
+    )
+    assert overview.weighted(trials, "recovery_time") == pytest.approx(3.5, rel=1e-12)
+    none = trials.assign(num_inconsistencies=0)
+    assert math.isnan(overview.weighted(none, "recovery_time"))
