@@ -43,6 +43,9 @@ _ANALYSES = ((WITHIN, "within"), (PUBLISHED, "pooled"))
 _BRACKETS = {(MANUAL, "strong"): 0.5, ("strong", "weak"): 0.5, (MANUAL, "weak"): 1.7}
 """Pairs of strengths and how high their bracket stands."""
 
+_MOST_CIRCLES = 40
+"""Participants shown one by one; more would hide the bars."""
+
 _ROW_HEIGHT = 9.0
 """Between two rows of marks [pt]."""
 
@@ -91,8 +94,9 @@ def _caption(material: StudyMaterial, quantity: Quantity, both: bool) -> str:
         " Brackets in (a): the same for each pair, within | pooled." if both else ""
     )
     who = f"{participants} participant" + ("s" if participants > 1 else "")
+    circles = "; circles are participants" if participants <= _MOST_CIRCLES else ""
     interval = (
-        "bars with 95 % intervals; circles are participants"
+        f"bars with 95 % intervals{circles}"
         if participants > 1
         else "no interval from one participant"
     )
@@ -185,7 +189,8 @@ def _bars(
         axes.bar(x, mean, width=0.74, color=colour)
         values = own.get(name, np.array([]))
         if values.size > 1:
-            _participants(axes, x, values)
+            if values.size <= _MOST_CIRCLES:
+                _participants(axes, x, values)
             interval_bar(axes, (x, mean), True, half, half)
         top = max(top, mean, *(mean + half, values.max()) if values.size > 1 else ())
     axes.set_xlim(min(places.values()) - 0.6, max(places.values()) + 0.6)

@@ -13,7 +13,7 @@ from costeer.study.reporting import findings, overview
 from costeer.study.reporting.comparisons import shown_quantities
 from costeer.study.reporting.inline import inline_svg
 from costeer.study.reporting.sections import Picture, Section, page_sections
-from costeer.study.reporting.tables import Table
+from costeer.study.reporting.tables import Table, shortened
 
 
 class Item(NamedTuple):
@@ -80,7 +80,7 @@ def _numbered(sections: Sequence[Section]) -> list[dict[str, object]]:
         for each in section.items:
             if isinstance(each, Table):
                 num_tables += 1
-                items.append(Item(num_tables, table=each))
+                items.append(Item(num_tables, table=shortened(each)))
             elif each.svg:
                 num_figures += 1
                 items.append(Item(num_figures, None, each, _drawing(each)))

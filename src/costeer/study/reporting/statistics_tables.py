@@ -24,8 +24,6 @@ EFFECTS = {
     "change_duration": "planned duration",
     "strength:change_duration": "strength × planned duration",
 }
-MOST_DROPPED = 60
-"""Rows of dropped data in the report; all are in `dropped.csv`."""
 
 
 def effects_table(material: StudyMaterial) -> Table:
@@ -156,13 +154,12 @@ def dropped_table(material: StudyMaterial) -> Table | None:
         return None
     rows = [
         (titles.get(row.measure, row.measure), row.participant, row.cell, row.reason)
-        for row in dropped[:MOST_DROPPED]
+        for row in dropped
     ]
-    more = len(dropped) - len(rows)
     return Table(
         name="dropped",
         title="Dropped data",
-        note=f"{more} more rows stand in dropped.csv." if more else "",
+        note="Also in dropped.csv.",
         header=("Measure", "Participant", "Cell", "Reason"),
         rows=tuple(rows),
         num_labels=4,

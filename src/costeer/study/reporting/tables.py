@@ -48,6 +48,19 @@ class Table(NamedTuple):
     prose: bool = False
 
 
+MOST_ROWS = 150
+"""Rows of a table on the page: the 84 trials of the published study have room."""
+
+
+def shortened(table: Table) -> Table:
+    """Return a table that is not too long for a page; its note says what is cut."""
+    more = len(table.rows) - MOST_ROWS
+    if more <= 0:
+        return table
+    note = f"{table.note} {more} more rows stand in the CSV files of the study."
+    return table._replace(rows=table.rows[:MOST_ROWS], note=note.strip())
+
+
 def measures_table(material: StudyMaterial) -> Table:
     """Return the mean of each measure in each condition with its interval."""
     names = conditions_driven(material)
@@ -110,48 +123,47 @@ def _marks(material: StudyMaterial, quantity: Quantity, name: str) -> str:
     return " | ".join(mark_of(row) for row in rows)
 
 
+_OF_TRIAL = {
+    "sdlp": ("SDLP [m]", 1.0, 3),
+    "swrr": ("Reversals [1/min]", 1.0, 2),
+    "driver_torque_rms": ("Torque RMS [N·m]", 1.0, 3),
+    "num_lane_changes": ("Lane changes", 1.0, 0),
+    "num_dropped_changes": ("Dropped", 1.0, 0),
+    "num_false_triggers": ("False triggers", 1.0, 0),
+    "num_missed": ("Missed", 1.0, 0),
+    "num_inconsistencies": ("Inconsistencies", 1.0, 0),
+}
+_OF_CHANGE = {
+    "overshoot": ("Overshoot [m]", 1.0, 3),
+    "steering_velocity_rms": ("RMS velocity [deg/s]", DEG, 2),
+    "peak_steering_angle": ("Peak angle [deg]", DEG, 2),
+    "duration": ("Duration [s]", 1.0, 2),
+}
+"""Columns of the table of trials: heading, shown value of one unit, decimals."""
+
+
 def trials_table(material: StudyMaterial) -> Table:
     """Return each trial with its own measures."""
-    columns = {
-        "sdlp": ("SDLP [m]", 1.0, 3),
-        "swrr": ("Reversals [1/min]", 1.0, 2),
-        "driver_torque_rms": ("Torque RMS [N·m]", 1.0, 3),
-        "num_lane_changes": ("Lane changes", 1.0, 0),
-        "num_dropped_changes": ("Dropped", 1.0, 0),
-        "num_false_triggers": ("False triggers", 1.0, 0),
-        "num_missed": ("Missed", 1.0, 0),
-        "num_inconsistencies": ("Inconsistencies", 1.0, 0),
-    }
-    changes = {
-        "overshoot": ("Overshoot [m]", 1.0, 3),
-        "steering_velocity_rms": ("RMS velocity [deg/s]", DEG, 2),
-        "peak_steering_angle": ("Peak angle [deg]", DEG, 2),
-        "duration": ("Duration [s]", 1.0, 2),
-    }
-    own = material.lane_changes.groupby(["participant", "condition"])[list(changes)]
-    table = material.trials.set_index(["participant", "condition"])[["order", *columns]]
-    table = table.join(own.mean().rename(columns=lambda name: f"change_{name}"))
-    shown = {**columns, **{f"change_{name}": form for name, form in changes.items()}}
+    key = ["participant", "condition"]
+    own = material.lane_changes.groupby(key)[list(_OF_CHANGE)].mean()
+    own = own.rename(columns=lambda name: f"change_{name}")
+    table = material.trials.set_index(key)[["order", *_OF_TRIAL]].join(own)
+    shown = _OF_TRIAL | {f"change_{name}": form for name, form in _OF_CHANGE.items()}
     rows = [
         (
-            str(key[0]),
-            str(key[1]),
+            *(str(name) for name in names),
             count(float(row["order"])),
             *(number(float(row[c]) * f, digits) for c, (_, f, digits) in shown.items()),
         )
-        for key, row in table.iterrows()
+        for names, row in table.iterrows()
     ]
+    headings = (heading for heading, _, _ in shown.values())
     return Table(
         name="trials",
         title="Every trial",
         note="The last four columns are means over the lane changes of the trial. More "
         "columns and every lane change stand in trials.csv and lane_changes.csv.",
-        header=(
-            "Participant",
-            "Condition",
-            "Order",
-            *(t for t, _, _ in shown.values()),
-        ),
+        header=("Participant", "Condition", "Order", *headings),
         rows=tuple(rows),
         num_labels=2,
     )
