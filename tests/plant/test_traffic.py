@@ -6,6 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from costeer.base.array import select
 from costeer.plant.traffic import (
     LeaderState,
     TrafficParameters,
@@ -13,7 +14,6 @@ from costeer.plant.traffic import (
     drive_on,
     due,
     no_leader,
-    select_leader,
 )
 
 TRAFFIC = TrafficParameters()
@@ -70,5 +70,5 @@ def test_a_leader_drives_on_at_its_speed(first: float, second: float) -> None:
 
 def test_one_of_two_leaders_is_chosen_whole() -> None:
     one, other = leader(0.1), no_leader()
-    assert select_leader(True, one, other) == one
-    assert select_leader(False, one, other) == other
+    assert select(True, one, other) == one
+    assert select(False, one, other) == other

@@ -130,9 +130,16 @@ def logical_not(flag: Flag) -> Flag:
 
 
 def select(condition: Flag, if_true: Value, if_false: Value) -> Value:
-    """Return one of two values by a flag: `if` that arrays and compilers accept."""
+    """Return one of two values by a flag: `if` that arrays and compilers accept.
+
+    Named tuples are chosen field by field.
+    """
     if isinstance(condition, (bool, np.bool_)):
         return if_true if condition else if_false
+    if isinstance(if_true, tuple):
+        fields = zip(if_true, cast("Any", if_false), strict=True)
+        chosen = (select(condition, one, other) for one, other in fields)
+        return cast("Value", cast("Any", type(if_true))(*chosen))
     return cast("Value", _numpy_like(condition).where(condition, if_true, if_false))
 
 

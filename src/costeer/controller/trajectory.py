@@ -84,21 +84,6 @@ def plan_path(
 
 
 @compiled
-def _select_path(flag: Flag, if_true: Quintic, if_false: Quintic) -> Quintic:
-    """One of two paths by a flag, field by field."""
-    return Quintic(
-        start=xp.select(flag, if_true.start, if_false.start),
-        length=xp.select(flag, if_true.length, if_false.length),
-        y0=xp.select(flag, if_true.y0, if_false.y0),
-        y1=xp.select(flag, if_true.y1, if_false.y1),
-        y2=xp.select(flag, if_true.y2, if_false.y2),
-        y3=xp.select(flag, if_true.y3, if_false.y3),
-        y4=xp.select(flag, if_true.y4, if_false.y4),
-        y5=xp.select(flag, if_true.y5, if_false.y5),
-    )
-
-
-@compiled
 def is_known(measurement: Measurement) -> Flag:
     """Whether all that a plan is made of is finite: a lost sample changes no plan."""
     place = measurement.longitudinal_position + measurement.lateral_position
@@ -144,7 +129,7 @@ def choose_mode(
     return TrajectoryState(
         mode=xp.select(started, LANE_CHANGING, mode),
         lane=lane,
-        path=_select_path(started, new_path, state.path),
+        path=xp.select(started, new_path, state.path),
         path_ended=ended & xp.logical_not(replan),
     )
 

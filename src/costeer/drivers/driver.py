@@ -214,7 +214,7 @@ def aim(
         decided.change_duration,
     )
     return TrackingState(
-        path=tracking.select_path(decided.started, path, wandered.path),
+        path=xp.select(decided.started, path, wandered.path),
         wander=wandered.wander,
         wander_rate=wandered.wander_rate,
     )

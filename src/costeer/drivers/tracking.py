@@ -9,7 +9,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from costeer.base import array as xp
-from costeer.base.array import Flag, Real, compiled
+from costeer.base.array import Real, compiled
 from costeer.base.bezier import Quintic, path_point, quintic
 from costeer.plant.parameters import RoadParameters
 from costeer.plant.road import lane_centre
@@ -94,21 +94,6 @@ def planned(
         xp.tan(measurement.yaw_angle),
         measurement.yaw_rate / speed,
         lane_centre(road, lane) + parameters.lane_bias,
-    )
-
-
-@compiled
-def select_path(flag: Flag, if_true: Quintic, if_false: Quintic) -> Quintic:
-    """One of two paths by a flag, field by field."""
-    return Quintic(
-        start=xp.select(flag, if_true.start, if_false.start),
-        length=xp.select(flag, if_true.length, if_false.length),
-        y0=xp.select(flag, if_true.y0, if_false.y0),
-        y1=xp.select(flag, if_true.y1, if_false.y1),
-        y2=xp.select(flag, if_true.y2, if_false.y2),
-        y3=xp.select(flag, if_true.y3, if_false.y3),
-        y4=xp.select(flag, if_true.y4, if_false.y4),
-        y5=xp.select(flag, if_true.y5, if_false.y5),
     )
 
 

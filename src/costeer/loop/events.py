@@ -16,7 +16,6 @@ from costeer.plant.traffic import (
     drive_on,
     due,
     no_leader,
-    select_leader,
 )
 from costeer.sensing.measurement import Measurement
 
@@ -98,7 +97,7 @@ def step_events(
         cruising,
         leader_uniform,
     )
-    leader = select_leader(appears, new, drive_on(state.leader, dt))
+    leader = xp.select(appears, new, drive_on(state.leader, dt))
     return EventState(leader=leader, event=event)
 
 

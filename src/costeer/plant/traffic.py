@@ -112,21 +112,3 @@ def drive_on(leader: LeaderState, dt: Real) -> LeaderState:
         lane=leader.lane,
         num_appeared=leader.num_appeared,
     )
-
-
-@compiled
-def select_leader(
-    flag: Flag, if_true: LeaderState, if_false: LeaderState
-) -> LeaderState:
-    """One of two leaders by a flag, field by field."""
-    return LeaderState(
-        present=xp.select(flag, if_true.present, if_false.present),
-        longitudinal_position=xp.select(
-            flag, if_true.longitudinal_position, if_false.longitudinal_position
-        ),
-        longitudinal_velocity=xp.select(
-            flag, if_true.longitudinal_velocity, if_false.longitudinal_velocity
-        ),
-        lane=xp.select(flag, if_true.lane, if_false.lane),
-        num_appeared=xp.select(flag, if_true.num_appeared, if_false.num_appeared),
-    )

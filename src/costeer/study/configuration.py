@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from costeer import __version__
+from costeer.base.entry import COMPILED_ROOMS
 from costeer.controller.step import ControllerParameters
 from costeer.intention.weights import load_weights
 from costeer.loop.scenario import TrialSetup, check_setup, check_study_seed
@@ -22,18 +23,6 @@ from costeer.study.conditions import (
     condition,
 )
 from costeer.study.design import Trial, plan_trials
-
-SIMULATING_ROOMS = (
-    "base",
-    "plant",
-    "sensing",
-    "intention",
-    "controller",
-    "methods",
-    "drivers",
-    "loop",
-)
-"""Rooms whose files, weights among them, decide what a simulated trial is."""
 
 MOST_PARTICIPANTS = 9999
 LARGEST_SEED = 2**63 - 1
@@ -180,7 +169,7 @@ def simulation_source() -> str:
     """
     package = Path(__file__).parents[1]
     digest = hashlib.sha256()
-    for room in SIMULATING_ROOMS:
+    for room in COMPILED_ROOMS:
         for file in sorted((package / room).rglob("*")):
             if file.is_file() and file.suffix != ".pyc":
                 digest.update(file.relative_to(package).as_posix().encode())
