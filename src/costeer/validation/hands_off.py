@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from costeer.base.array import Real
+from costeer.controller import actuation
 from costeer.controller.actuation import STRONG, ActuationParameters
 from costeer.loop.columns import TrialRecord
 from costeer.loop.scenario import TrialSetup
@@ -38,6 +39,7 @@ TRIGGER_TIME = 5.0
 _OFFSET_RUN = 90.0
 _HUNTING_TIME = 30.0
 _CHANGE_RUN = 40.0
+_END = 0.1
 
 
 class Bounds(NamedTuple):
@@ -66,7 +68,8 @@ class ChangeFigures(NamedTuple):
         peak_steering_angle: [rad].
         peak_torque: Of the motor [N·m].
         num_limited: Control steps at which the rate limit held the torque back [-].
-        last_limited: When it last did, after the trigger [s]; 0 if never.
+        num_limited_inside: Those of them that are not within 0.1 s after an end of
+            the path, where the mode changes [-].
     """
 
     change_duration: Real
@@ -75,7 +78,7 @@ class ChangeFigures(NamedTuple):
     peak_steering_angle: Real
     peak_torque: Real
     num_limited: int
-    last_limited: Real
+    num_limited_inside: int
 
 
 class HandsOffFigures(NamedTuple):
@@ -124,13 +127,23 @@ def settling_time(record: TrialRecord) -> Real:
     return float(record.columns["time"][outside[-1]] + DT) if outside.size else 0.0
 
 
-def limited_steps(record: TrialRecord) -> NDArray[np.float64]:
-    """Times at which the rate limit would hold the torque back, shape `(step,)` [s]."""
-    limits = ActuationParameters()
+def limited_steps(record: TrialRecord) -> NDArray[np.bool_]:
+    """Where the rate limit holds the torque back, shape `(time,)`."""
     wanted = record.columns["haptic_gain"] * record.columns["instructed_torque"]
-    asked = np.clip(STRONG * wanted, -limits.torque_limit, limits.torque_limit)
-    fast = np.abs(np.diff(asked)) > limits.torque_rate_limit * DT
-    return np.asarray(record.columns["time"][1:][fast])
+    limits = ActuationParameters(strength_factor=STRONG)
+    state, torques = actuation.initial_state(), []
+    for torque in wanted.tolist():
+        state, given = actuation.step(limits, state, 1.0, torque, DT)
+        torques.append(given)
+    asked = np.clip(wanted, -limits.torque_limit, limits.torque_limit)
+    return np.asarray(np.array(torques) != asked)
+
+
+def near_an_end(record: TrialRecord) -> NDArray[np.bool_]:
+    """Samples within `_END` after a change of mode, shape `(time,)`."""
+    mode = record.columns["mode"]
+    changed = np.concatenate([[False], mode[1:] != mode[:-1]])
+    return np.convolve(changed, np.ones(round(_END / DT)))[: len(mode)] > 0.0
 
 
 def change_figures(car: str, speed: Real, change_duration: Real) -> ChangeFigures:
@@ -149,8 +162,8 @@ def change_figures(car: str, speed: Real, change_duration: Real) -> ChangeFigure
         overshoot=float(-RoadParameters().lane_width - position.min()),
         peak_steering_angle=float(np.abs(columns["steering_wheel_angle"]).max()),
         peak_torque=float(np.abs(columns["applied_torque"]).max()),
-        num_limited=len(limited),
-        last_limited=float(limited[-1] - TRIGGER_TIME) if limited.size else 0.0,
+        num_limited=int(limited.sum()),
+        num_limited_inside=int((limited & ~near_an_end(record)).sum()),
     )
 
 
