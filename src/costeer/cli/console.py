@@ -88,8 +88,12 @@ def note(message: str) -> None:
 def print_table(
     headings: Sequence[str], rows: Sequence[Sequence[str]], title: str = ""
 ) -> None:
-    """Print a table on stdout; a column whose cells are all numbers leans right."""
+    """Print a table on stdout; a column whose cells are all numbers leans right.
+
+    A terminal folds it to its width; in a file or a pipe it is as wide as it needs.
+    """
     from rich.console import Console
+    from rich.measure import Measurement
     from rich.table import Table
     from rich.text import Text
 
@@ -100,7 +104,11 @@ def print_table(
         table.add_column(Text(heading), justify="right" if numeric else "left")
     for row in rows:
         table.add_row(*map(Text, row))
-    Console().print(table)
+    console = Console()
+    if not console.is_terminal:
+        wide = Console(width=1000)
+        console.width = Measurement.get(wide, wide.options, table).maximum
+    console.print(table)
 
 
 def _is_number(cell: str) -> bool:

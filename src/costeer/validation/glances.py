@@ -50,11 +50,33 @@ def glance_before_change(record: TrialRecord, change: dict[str, Any]) -> float:
         record: The trial.
         change: Row of the lane change, with `crossing_time` and `direction`.
     """
+    time, looks, _ = _before_touching(record, change)
+    return float(bool(time[looks].size))
+
+
+def first_glance_lead(record: TrialRecord, change: dict[str, Any]) -> Real:
+    """How long before the wheel touched the first of those glances was [s].
+
+    Args:
+        record: The trial.
+        change: Row of the lane change, as above.
+
+    Returns:
+        NaN if there was none.
+    """
+    time, looks, touch = _before_touching(record, change)
+    return float(touch - time[looks][0]) if looks.any() else math.nan
+
+
+def _before_touching(
+    record: TrialRecord, change: dict[str, Any]
+) -> tuple[NDArray[np.float64], NDArray[np.bool_], Real]:
+    """Times of the 6 s before the wheel touched, looks to that side, and the touch."""
     direction = int(change["direction"])
     touch = touching_time(record, change["crossing_time"], direction)
     time = record.columns["time"]
     window = (time > touch - WINDOW) & (time <= touch)
-    return float(_looks(record.columns["head_yaw"][window], direction).any())
+    return time[window], _looks(record.columns["head_yaw"][window], direction), touch
 
 
 def false_glance_share(record: TrialRecord) -> Real:

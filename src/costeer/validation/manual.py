@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -18,8 +17,13 @@ from costeer.base.array import Real
 from costeer.loop.columns import TrialRecord
 from costeer.loop.scenario import TrialSetup
 from costeer.loop.trial import simulate_trial
+from costeer.study.jobs import JobsStoppedError, run_jobs
 from costeer.study.measures import lane_change_rows, trial_row
-from costeer.validation.glances import false_glance_share, glance_before_change
+from costeer.validation.glances import (
+    false_glance_share,
+    first_glance_lead,
+    glance_before_change,
+)
 
 Row = dict[str, Any]  # Any: as the study's tables
 
@@ -41,6 +45,9 @@ class Target(NamedTuple):
     low: Real
     high: Real
 
+
+PLANNED_CHANGES = 8
+"""Lane changes that the course asks of a driver: four events, out and back."""
 
 TARGETS = (
     Target("M1", "SDLP, mean over drivers", "m", 0.15, 0.25),
@@ -95,6 +102,7 @@ def manual_trial(seed: int, participant: int) -> tuple[Row, list[Row]]:
     changes = lane_change_rows(record)
     for change in changes:
         change["glance"] = glance_before_change(record, change)
+        change["first_glance_lead"] = first_glance_lead(record, change)
     return trial_row(record) | _extent(record), changes
 
 
@@ -120,23 +128,26 @@ def drive_population(
         seed: Of the population.
         num_drivers: How many.
         jobs: Threads.
-        progress: Called with the number of trials done.
+        progress: Called with the number of trials just done.
     """
-    trials: list[Row] = []
-    changes: list[Row] = []
     numbers = range(1, num_drivers + 1)
-    with ThreadPoolExecutor(jobs) as pool:
-        for trial, own in pool.map(lambda n: manual_trial(seed, n), numbers):
-            trials.append(trial)
-            changes += own
-            if progress is not None:
-                progress(len(trials))
-    return ManualDriving(trials, changes, 8 * num_drivers)
+    try:
+        done = run_jobs(
+            lambda number: manual_trial(seed, number),
+            numbers,
+            jobs,
+            lambda _: progress(1) if progress is not None else None,
+        )
+    except JobsStoppedError as stopped:
+        raise (stopped.__cause__ or stopped) from None
+    trials = [trial for trial, _ in done]
+    changes = [change for _, own in done for change in own]
+    return ManualDriving(trials, changes, PLANNED_CHANGES * num_drivers)
 
 
 def compare(driving: ManualDriving) -> list[Comparison]:
     """Every target beside what the population gives."""
-    trial, change = _columns(driving.trials), _columns(driving.changes)
+    trial, change = columns_of(driving.trials), columns_of(driving.changes)
     values = {
         "M1": _mean(trial("sdlp")),
         "M2": _deviation(trial("sdlp")),
@@ -161,7 +172,13 @@ def _within(target: Target, value: Real) -> bool:
     return target.low <= value <= target.high
 
 
-def _columns(rows: list[Row]) -> Callable[[str], NDArray[np.float64]]:
+def missed_by(comparison: Comparison) -> Real:
+    """How far the value lies outside the range, in the target's unit; 0 inside."""
+    target, value = comparison.target, comparison.value
+    return max(target.low - value, value - target.high, 0.0)
+
+
+def columns_of(rows: list[Row]) -> Callable[[str], NDArray[np.float64]]:
     """A function that gives a column without its missing values."""
 
     def column(name: str) -> NDArray[np.float64]:

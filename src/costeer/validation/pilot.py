@@ -6,7 +6,7 @@ gap of the two pseudo-works is looked at, no measure of the study.
 
 from __future__ import annotations
 
-from concurrent.futures import ThreadPoolExecutor
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
@@ -16,6 +16,7 @@ from costeer.base.array import Real
 from costeer.controller.actuation import STRONG, WEAK
 from costeer.loop.scenario import PILOT_SEED, TrialSetup, trial_driver
 from costeer.loop.trial import simulate_trial
+from costeer.study.jobs import JobsStoppedError, run_jobs
 
 NEVER = 100.0
 """A threshold that no run reaches, so that the gain stays full [W]."""
@@ -78,15 +79,32 @@ def opposed_gaps(setup: TrialSetup) -> NDArray[np.float64]:
     return np.asarray(gap[opposed])
 
 
-def pilot_threshold(num_drivers: int, jobs: int = 2) -> PilotResult:
+def pilot_setups(num_drivers: int) -> list[TrialSetup]:
+    """Trials of all pilot drivers, in order."""
+    return [s for n in range(1, num_drivers + 1) for s in agreeing_setups(n)]
+
+
+def pilot_threshold(
+    num_drivers: int,
+    jobs: int = 2,
+    progress: Callable[[int], None] | None = None,
+) -> PilotResult:
     """Run the pilot drivers and compute δ.
 
     Args:
         num_drivers: How many pilot drivers.
         jobs: Threads.
+        progress: Called with the number of trials just done.
     """
-    setups = [s for n in range(1, num_drivers + 1) for s in agreeing_setups(n)]
-    with ThreadPoolExecutor(jobs) as pool:
-        gaps = np.concatenate(list(pool.map(opposed_gaps, setups)))
-    percentile = float(np.percentile(gaps, PERCENTILE))
-    return PilotResult(num_drivers, len(gaps), percentile, FACTOR * percentile)
+    try:
+        gaps = run_jobs(
+            opposed_gaps,
+            pilot_setups(num_drivers),
+            jobs,
+            lambda _: progress(1) if progress is not None else None,
+        )
+    except JobsStoppedError as stopped:
+        raise (stopped.__cause__ or stopped) from None
+    every = np.concatenate(gaps)
+    percentile = float(np.percentile(every, PERCENTILE))
+    return PilotResult(num_drivers, len(every), percentile, FACTOR * percentile)

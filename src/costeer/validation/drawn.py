@@ -1,0 +1,77 @@
+"""What was drawn for the drivers of a population: the parameters that differ."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from costeer.base.array import Real
+from costeer.base.packing import leaf_names, packed
+from costeer.drivers.driver import DriverParameters
+from costeer.drivers.population import participant_driver
+
+UNITS = {
+    "vision.lead_time": "s",
+    "vision.near_noise": "rad",
+    "vision.motor_noise": "rad",
+    "arm.stiffness": "N·m/rad",
+    "reliance.reliance": "-",
+    "reliance.cocontraction": "-",
+    "tracking.wander_deviation": "m",
+    "tracking.lane_bias": "m",
+    "decision.headway": "s",
+    "decision.return_distance": "m",
+    "decision.change_duration": "s",
+    "gaze.amplitude": "-",
+    "longitudinal.preferred_speed": "m/s",
+    "longitudinal.overtaking_speed": "m/s",
+}
+"""Parameters that differ between drivers, and their units."""
+
+
+class Spread(NamedTuple):
+    """How one parameter is spread over a population.
+
+    Attributes:
+        parameter: Part of the driver and name.
+        unit: SI.
+        low: 5th percentile.
+        median: 50th percentile.
+        high: 95th percentile.
+    """
+
+    parameter: str
+    unit: str
+    low: Real
+    median: Real
+    high: Real
+
+
+def drawn_drivers(seed: int, num_drivers: int, speed: Real) -> list[dict[str, Real]]:
+    """Parameters of each driver that are his or her own.
+
+    Args:
+        seed: Of the population.
+        num_drivers: How many.
+        speed: Suggested speed [m/s].
+    """
+    places = {name: leaf_names(DriverParameters()).index(name) for name in UNITS}
+    drivers = []
+    for number in range(1, num_drivers + 1):
+        values = packed(participant_driver(seed, number, speed))
+        own = {name: float(values[place]) for name, place in places.items()}
+        drivers.append({"participant": number, **own})
+    return drivers
+
+
+def spreads(drivers: list[dict[str, Real]]) -> list[Spread]:
+    """Percentiles of each parameter over the drivers."""
+    return [
+        Spread(
+            name,
+            unit,
+            *map(float, np.percentile([d[name] for d in drivers], [5, 50, 95])),
+        )
+        for name, unit in UNITS.items()
+    ]
