@@ -17,6 +17,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
+from jaxtyping import Float
 from numpy.typing import DTypeLike, NDArray
 
 from costeer.intention.features import NUM_FEATURES, scaled
@@ -75,13 +76,17 @@ def random_weights(hidden: int, seed: int) -> NetworkWeights:
     )
 
 
-def sigmoid(x: Floats) -> Floats:
+def sigmoid(x: Floats | np.floating) -> Floats | np.floating:
     """Logistic function, without overflow."""
-    value: Floats = 0.5 + 0.5 * np.tanh(0.5 * x)
+    value: Floats | np.floating = 0.5 + 0.5 * np.tanh(0.5 * x)
     return value
 
 
-def gru_step(weights: NetworkWeights, state: Floats, sample: Floats) -> Floats:
+def gru_step(
+    weights: NetworkWeights,
+    state: Float[Floats, "*batch hidden"],
+    sample: Float[Floats, "*batch feature"],
+) -> Float[Floats, "*batch hidden"]:
     """New hidden state after one sample.
 
     Args:
@@ -104,7 +109,7 @@ def crossing_probability(
     weights: NetworkWeights,
     feature_window: NDArray[np.float64],
     dtype: DTypeLike = np.float64,
-) -> Floats:
+) -> Float[Floats, "*batch"]:
     """Probability of a crossing to the adjacent side within the next 3 s, Eq. (2).
 
     Args:

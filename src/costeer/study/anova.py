@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
+from jaxtyping import Float, Int
 from numpy.typing import NDArray
 
 from costeer.study.contrasts import Effect
@@ -39,8 +40,8 @@ def no_f_test(reason: str) -> FTest:
 
 
 def pooled_f_tests(
-    values: NDArray[np.float64],
-    cells: NDArray[np.intp],
+    values: Float[NDArray[np.float64], " observation"],
+    cells: Int[NDArray[np.intp], " observation"],
     effects: Sequence[Effect],
 ) -> tuple[FTest, ...]:
     """Type III F tests of the effects of a fully crossed design, balanced or not.

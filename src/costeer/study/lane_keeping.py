@@ -1,6 +1,9 @@
 """How well the lane is kept: position, time to the line, departures."""
 
+from __future__ import annotations
+
 import numpy as np
+from jaxtyping import Float
 
 from costeer.study.crossings import excursion, within
 from costeer.study.definitions import (
@@ -39,8 +42,10 @@ def lateral_speed(columns: Columns) -> Signal:
 
 
 def time_to_line_crossing(
-    position: Signal, speed: Signal, parameters: MeasureParameters = DEFAULTS
-) -> Signal:
+    position: Float[Signal, " time"],
+    speed: Float[Signal, " time"],
+    parameters: MeasureParameters = DEFAULTS,
+) -> Float[Signal, " time"]:
     """Time until a wheel reaches the line if the lateral speed stays [s].
 
     The gap between the side of the car it moves to and the line of the left lane on

@@ -13,6 +13,7 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
+from jaxtyping import Float
 from numpy.typing import NDArray
 
 from costeer.study.anova import ONE_LEVEL, FTest, no_f_test, vanishes
@@ -41,7 +42,7 @@ class _Model(NamedTuple):
 
 
 def mixed_f_tests(
-    means: NDArray[np.float64], effects: Sequence[Effect]
+    means: Float[NDArray[np.float64], "participant cell"], effects: Sequence[Effect]
 ) -> tuple[FTest, ...]:
     """Wald F tests of the fixed effects beside a random participant.
 

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import numpy as np
+from jaxtyping import Float
 from numpy.typing import NDArray
 
 from costeer.study.anova import ONE_LEVEL, FTest, no_f_test, vanishes
 from costeer.study.contrasts import Effect
 
 
-def repeated_f_test(means: NDArray[np.float64], effect: Effect) -> FTest:
+def repeated_f_test(
+    means: Float[NDArray[np.float64], "participant cell"], effect: Effect
+) -> FTest:
     """F test of an effect against its own interaction with participants.
 
     Each participant is reduced to the effect's orthonormal contrasts; the test asks
@@ -43,7 +46,9 @@ def repeated_f_test(means: NDArray[np.float64], effect: Effect) -> FTest:
     )
 
 
-def greenhouse_geisser(deviations: NDArray[np.float64]) -> float:
+def greenhouse_geisser(
+    deviations: Float[NDArray[np.float64], "participant contrast"],
+) -> float:
     """Factor on the degrees of freedom, from 1 / contrasts to 1 under sphericity.
 
     Args:

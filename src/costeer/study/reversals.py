@@ -7,9 +7,12 @@ Written from the publication; the counts equal those of the authors' program on 
 90 cases of tests/data/swrr_reference.
 """
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 
 import numpy as np
+from jaxtyping import Float
 from scipy.signal import butter, filtfilt
 
 from costeer.study.definitions import (
@@ -25,7 +28,9 @@ _PADDING = 6
 MINIMUM_SAMPLES = _PADDING + 1
 
 
-def low_passed(angle: Signal, rate: float, cutoff: float) -> Signal:
+def low_passed(
+    angle: Float[Signal, " time"], rate: float, cutoff: float
+) -> Float[Signal, " time"]:
     """Second-order Butterworth, run forwards and backwards, so without delay.
 
     Args:
@@ -52,7 +57,7 @@ def low_passed(angle: Signal, rate: float, cutoff: float) -> Signal:
     return np.asarray(filtfilt(numerator, denominator, angle, padlen=_PADDING))
 
 
-def stationary_values(angle: Signal) -> Signal:
+def stationary_values(angle: Float[Signal, " time"]) -> Float[Signal, " value"]:
     """The first sample and all where the slope changes sign or is zero, in order.
 
     A plateau counts with every sample, as in the authors' program: on a quantised,
@@ -63,7 +68,7 @@ def stationary_values(angle: Signal) -> Signal:
     return np.concatenate([angle[:1], angle[turning]])
 
 
-def count_reversals(angle: Signal, gap: float) -> int:
+def count_reversals(angle: Float[Signal, " time"], gap: float) -> int:
     """Number of reversals in both directions that exceed a gap.
 
     Args:

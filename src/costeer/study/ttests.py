@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
+from jaxtyping import Float
 from numpy.typing import NDArray
 
 from costeer.study.anova import vanishes
@@ -43,7 +44,8 @@ class TTest(NamedTuple):
 
 
 def independent_t_test(
-    first: NDArray[np.float64], second: NDArray[np.float64]
+    first: Float[NDArray[np.float64], " first"],
+    second: Float[NDArray[np.float64], " second"],
 ) -> TTest:
     """Student's t test of two independent groups with one variance.
 
@@ -67,7 +69,10 @@ def independent_t_test(
     return _student(means, error, df, statistic, size)
 
 
-def paired_t_test(first: NDArray[np.float64], second: NDArray[np.float64]) -> TTest:
+def paired_t_test(
+    first: Float[NDArray[np.float64], " participant"],
+    second: Float[NDArray[np.float64], " participant"],
+) -> TTest:
     """Student's t test of paired differences.
 
     Args:

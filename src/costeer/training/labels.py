@@ -11,6 +11,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
+from jaxtyping import Int, Int8
 from numpy.typing import NDArray
 
 from costeer.intention.features import SAMPLE_RATE
@@ -32,7 +33,9 @@ class Labels(NamedTuple):
     known: NDArray[np.bool_]
 
 
-def crossings(lane: NDArray[np.int8]) -> NDArray[np.int8]:
+def crossings(
+    lane: Int[NDArray[np.integer], " time"],
+) -> Int8[NDArray[np.int8], " time"]:
     """Side of each crossing at the first sample in the new lane, else 0.
 
     Args:
@@ -46,8 +49,8 @@ def crossings(lane: NDArray[np.int8]) -> NDArray[np.int8]:
 
 
 def labels(
-    crossing: NDArray[np.int8],
-    side: NDArray[np.int8],
+    crossing: Int8[NDArray[np.int8], " time"],
+    side: Int8[NDArray[np.int8], " time"],
     horizon: float = PREDICTION_HORIZON,
 ) -> Labels:
     """Truth at each sample.

@@ -10,25 +10,28 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
+from jaxtyping import Bool, Float, Int
 from numpy.typing import NDArray
 
 Counts = NDArray[np.float64]
+Probabilities = NDArray[np.float64]
+Truth = NDArray[np.bool_]
 
 NUM_BINS = 2000
 _LARGEST_LOGIT = 15.0
 
 
 def level_counts(
-    probability: NDArray[np.float64], positive: NDArray[np.bool_]
-) -> tuple[Counts, Counts]:
+    probability: Float[Probabilities, " sample"], positive: Bool[Truth, " sample"]
+) -> tuple[Float[Counts, " level"], Float[Counts, " level"]]:
     """Positives and negatives at each value that occurs, highest first."""
     values, level = np.unique(-probability, return_inverse=True)
     return _counted(level, positive, len(values))
 
 
 def binned_counts(
-    probability: NDArray[np.float64], positive: NDArray[np.bool_]
-) -> tuple[Counts, Counts]:
+    probability: Float[Probabilities, " sample"], positive: Bool[Truth, " sample"]
+) -> tuple[Float[Counts, " level"], Float[Counts, " level"]]:
     """Positives and negatives in `NUM_BINS` bins of the logit, highest first."""
     tiny = 1e-12
     held = np.clip(probability, tiny, 1.0 - tiny)
@@ -39,14 +42,18 @@ def binned_counts(
 
 
 def _counted(
-    level: NDArray[np.int64], positive: NDArray[np.bool_], num_levels: int
-) -> tuple[Counts, Counts]:
+    level: Int[NDArray[np.int64], " sample"],
+    positive: Bool[Truth, " sample"],
+    num_levels: int,
+) -> tuple[Float[Counts, " level"], Float[Counts, " level"]]:
     yes = np.bincount(level[positive], minlength=num_levels)
     no = np.bincount(level[~positive], minlength=num_levels)
     return yes.astype(np.float64), no.astype(np.float64)
 
 
-def pr_auc(positives: Counts, negatives: Counts) -> Counts:
+def pr_auc(
+    positives: Float[Counts, "*batch level"], negatives: Float[Counts, "*batch level"]
+) -> Float[Counts, "*batch"]:
     """Area under precision over recall: average precision, without interpolation.
 
     Returns:
@@ -59,7 +66,9 @@ def pr_auc(positives: Counts, negatives: Counts) -> Counts:
         return np.asarray((precision * positives).sum(axis=-1) / total)
 
 
-def roc_auc(positives: Counts, negatives: Counts) -> Counts:
+def roc_auc(
+    positives: Float[Counts, "*batch level"], negatives: Float[Counts, "*batch level"]
+) -> Float[Counts, "*batch"]:
     """Chance that a positive scores above a negative, ties count half.
 
     Returns:
@@ -88,7 +97,9 @@ class Confusion(NamedTuple):
 
 
 def confusion(
-    probability: NDArray[np.float64], positive: NDArray[np.bool_], threshold: float
+    probability: Float[Probabilities, " sample"],
+    positive: Bool[Truth, " sample"],
+    threshold: float,
 ) -> Confusion:
     """Count the four cases; at the threshold the answer is yes."""
     said = probability >= threshold
@@ -105,7 +116,7 @@ def scores(counts: Confusion) -> dict[str, Counts]:
     tp, fp, fn, tn = counts
     with np.errstate(invalid="ignore", divide="ignore"):
         recall, specificity = tp / (tp + fn), tn / (tn + fp)
-        return {
+        found = {
             "prevalence": (tp + fn) / (tp + fp + fn + tn),
             "accuracy": (tp + tn) / (tp + fp + fn + tn),
             "accuracy_of_never": (fp + tn) / (tp + fp + fn + tn),
@@ -114,14 +125,19 @@ def scores(counts: Confusion) -> dict[str, Counts]:
             "recall": recall,
             "f1": 2.0 * tp / (2.0 * tp + fp + fn),
         }
+    return {name: np.asarray(value) for name, value in found.items()}
 
 
-def brier(probability: NDArray[np.float64], positive: NDArray[np.bool_]) -> float:
+def brier(
+    probability: Float[Probabilities, " sample"], positive: Bool[Truth, " sample"]
+) -> float:
     """Mean squared difference of probability and truth."""
     return float(np.mean((probability - positive) ** 2))
 
 
-def log_loss(probability: NDArray[np.float64], positive: NDArray[np.bool_]) -> float:
+def log_loss(
+    probability: Float[Probabilities, " sample"], positive: Bool[Truth, " sample"]
+) -> float:
     """Mean negative log of the probability given to the truth [nat]."""
     of_truth = np.where(positive, probability, 1.0 - probability)
     return float(-np.mean(np.log(np.maximum(of_truth, 1e-12))))
@@ -142,7 +158,7 @@ class CalibrationBin(NamedTuple):
 
 
 def calibration(
-    probability: NDArray[np.float64], positive: NDArray[np.bool_]
+    probability: Float[Probabilities, " sample"], positive: Bool[Truth, " sample"]
 ) -> list[CalibrationBin]:
     """Said against observed in tenths of the probability; empty tenths are left out."""
     tenth = np.minimum((probability * 10.0).astype(np.int64), 9)
