@@ -29,7 +29,7 @@ class CommandGroup(LazyGroup):
         "train": "Fit the intention network on records.",
         "evaluate": "Judge the intention network on records or a table.",
         "analyse": "Compute driving measures from records or a table.",
-        "report": "Write tables, tests, figures and report of a study folder again.",
+        "report": "Write tables, tests, figures and report.html of a study again.",
         "bench": "Measure the speed of the control step, a trial and a batch.",
         "doctor": "Show what this computer has and how to mend what is missing.",
     }

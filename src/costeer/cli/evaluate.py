@@ -57,7 +57,7 @@ def evaluate(
     ] = 0.05,
     json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
 ) -> None:
-    """Judge the intention network on records or on a table.
+    """Judge the intention network on records or a table.
 
     A table has the names of a trial record: time, lane, head_yaw,
     longitudinal_acceleration, longitudinal_velocity, steering_wheel_angle,

@@ -13,7 +13,7 @@ from costeer.cli.console import progress
 def report(
     folder: Annotated[Path, typer.Argument(help="Folder of the study.")],
 ) -> None:
-    """Write tables, tests, figures and report.html of a study folder again.
+    """Write tables, tests, figures and report.html of a study again.
 
     The records stay as they are; nothing is simulated. Works for virtual drivers and
     for people, and for a study that is not finished. The tables trials.csv and

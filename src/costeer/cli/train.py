@@ -44,7 +44,7 @@ def train(
         int | None, typer.Option(help="Threads to simulate with.", callback=at_least(1))
     ] = None,
 ) -> None:
-    """Fit the intention network on records, by drivers it will not be judged on.
+    """Fit the intention network on records.
 
     Drivers are dealt to training, validation and test; the last judge the result. Needs
     the extra `train` (JAX, Optax).
