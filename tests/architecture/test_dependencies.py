@@ -1,0 +1,53 @@
+"""What the package imports is what it asks for, no less and no more."""
+
+from __future__ import annotations
+
+import ast
+import re
+import sys
+import tomllib
+from collections.abc import Iterator
+from importlib.metadata import packages_distributions
+
+from tests.architecture.source import ROOT, files, tree
+
+PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]
+
+COMES_WITH = {"llvmlite": "numba", "markupsafe": "jinja2"}
+"""Imported packages that another one is made of and pins itself."""
+
+
+def named(requirements: list[str]) -> set[str]:
+    """Names of the packages in a list of requirements."""
+    return {re.split(r"[^A-Za-z0-9._-]", line, maxsplit=1)[0] for line in requirements}
+
+
+def imported() -> Iterator[str]:
+    """Names of the distributions that the package imports, anywhere in a file."""
+    owners = packages_distributions()
+    for file in files():
+        for node in ast.walk(tree(file)):
+            names = []
+            if isinstance(node, ast.Import):
+                names = [alias.name for alias in node.names]
+            elif isinstance(node, ast.ImportFrom) and node.module:
+                names = [node.module]
+            for top in {name.partition(".")[0] for name in names}:
+                if top not in sys.stdlib_module_names and top != "costeer":
+                    yield owners.get(top, [top])[0].lower()
+
+
+def test_every_base_dependency_is_imported() -> None:
+    assert named(PROJECT["dependencies"]) - set(imported()) == set()
+
+
+def test_every_import_is_a_dependency_or_of_an_extra() -> None:
+    extras = PROJECT["optional-dependencies"].values()
+    asked = named([*PROJECT["dependencies"], *(line for e in extras for line in e)])
+    made_of = {part for part, whole in COMES_WITH.items() if whole in asked}
+    assert set(imported()) - asked - made_of == set()
+
+
+def test_extras_add_to_the_base_and_do_not_repeat_it() -> None:
+    for name, requirements in PROJECT["optional-dependencies"].items():
+        assert not named(requirements) & named(PROJECT["dependencies"]), name
