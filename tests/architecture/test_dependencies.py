@@ -13,6 +13,13 @@ from tests.architecture.source import ROOT, files, tree
 
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]
 
+PEERS = {
+    "gymnasium": "highway-env",
+    "highway_env": "highway-env",
+    "vehiclemodels": "commonroad-vehicle-models",
+}
+"""Modules of the extra `bench`, which need not be installed, and what brings them."""
+
 COMES_WITH = {"llvmlite": "numba", "markupsafe": "jinja2"}
 """Imported packages that another one is made of and pins itself."""
 
@@ -34,7 +41,7 @@ def imported() -> Iterator[str]:
                 names = [node.module]
             for top in {name.partition(".")[0] for name in names}:
                 if top not in sys.stdlib_module_names and top != "costeer":
-                    yield owners.get(top, [top])[0].lower()
+                    yield PEERS.get(top) or owners.get(top, [top])[0].lower()
 
 
 def test_every_base_dependency_is_imported() -> None:
