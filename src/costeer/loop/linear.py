@@ -41,7 +41,9 @@ STATES = (
 """What the linear plant remembers; the torque command in its delay comes on top."""
 
 _STEP = 1e-6
+_SMALLEST_MARGIN = 1e-2
 _LARGEST_MARGIN = 1e3
+_MARGIN_STEP = 1.03
 _NUM_FREQUENCIES = 4000
 
 Vector: TypeAlias = NDArray[np.float64]
@@ -203,13 +205,12 @@ def gain_margin(loop: LinearLoop, gain: Real) -> Real:
 
     Below 1 for a loop that is unstable as it is; infinite beyond 1000.
     """
-    factors = np.geomspace(1e-2, _LARGEST_MARGIN, 400)
-    unstable = [largest_modulus(loop, gain * factor) >= 1.0 for factor in factors]
-    if not any(unstable):
-        return math.inf
-    first = unstable.index(True)
-    low, high = float(factors[max(first - 1, 0)]), float(factors[first])
-    for _ in range(40):
+    low = high = _SMALLEST_MARGIN
+    while largest_modulus(loop, gain * high) < 1.0:
+        low, high = high, high * _MARGIN_STEP
+        if high > _LARGEST_MARGIN:
+            return math.inf
+    for _ in range(30):
         middle = math.sqrt(low * high)
         if largest_modulus(loop, gain * middle) >= 1.0:
             high = middle
