@@ -17,12 +17,12 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from costeer.bench.control import verdict_seconds
 from costeer.intention.features import NUM_FEATURES, WINDOW_LENGTH, IntentionSample
 from costeer.intention.gru import random_weights
 from costeer.intention.kernel import LAYOUT
 from costeer.intention.wavefront import (
     advance,
-    crossing_probabilities,
     initial_state,
     wavefront_weights,
 )
@@ -33,7 +33,7 @@ TICKS = 20_000
 
 
 def tick_times(hidden: int) -> NDArray[np.float64]:
-    """Seconds of each call of `advance` from Python ."""
+    """Seconds of each call of `advance` from Python."""
     packed = wavefront_weights(random_weights(hidden, 1))
     state = initial_state(packed)
     sample = IntentionSample(*np.random.default_rng(0).normal(size=6))
@@ -45,19 +45,6 @@ def tick_times(hidden: int) -> NDArray[np.float64]:
         advance(packed, state, sample)
         times[i] = time.perf_counter() - start
     return times
-
-
-def compiled_time(hidden: int) -> float:
-    """Median seconds per tick when compiled code calls, as the closed loop does."""
-    weights = random_weights(hidden, 1)
-    features = np.random.default_rng(0).normal(size=(2_000, NUM_FEATURES))
-    crossing_probabilities(weights, features)
-    runs = []
-    for _ in range(15):
-        start = time.perf_counter()
-        crossing_probabilities(weights, features)
-        runs.append((time.perf_counter() - start) / len(features))
-    return float(np.median(runs))
 
 
 def onnx_time(hidden: int) -> float:
@@ -90,7 +77,7 @@ def main() -> None:
     print(f"{platform.processor() or platform.machine()}, {LAYOUT}, one thread")
     print("hidden   compiled us   from Python p50   p99   GFLOP/s   ONNX Runtime us")
     for hidden in SIZES:
-        inside = compiled_time(hidden)
+        inside = float(np.median(verdict_seconds(random_weights(hidden, 1), 15)))
         p50, p99 = np.percentile(tick_times(hidden), [50, 99])
         work = 2 * 3 * hidden * hidden * WINDOW_LENGTH
         print(

@@ -1,0 +1,174 @@
+"""Plant against plant: the same manoeuvre at the same step, here and in two peers.
+
+Only the car is compared, with a steering angle given from outside: no driver, no
+controller, no column. The peers are Python packages; most of the ratio to them is
+compilation, which the same plant in plain Python shows.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from costeer.base import array as xp
+from costeer.base.array import compiled
+from costeer.base.entry import entry
+from costeer.base.integrate import rk4
+from costeer.bench.timing import Effort, Figure, Outcome, Skipped, figure, seconds_of
+from costeer.plant.parameters import CarParameters
+from costeer.plant.vehicle import VehicleInput, VehicleState, vehicle_rate
+
+UNIT = "vehicle-s/s"
+SPEED = 70.0 / 3.6
+SECONDS = 5.0
+PLANT_DT = 1.0 / 480.0
+TICK = 1.0 / 60.0
+AMPLITUDE = 0.01
+"""Of one period of a sine of the road-wheel angle [rad]: a lane change."""
+
+COMPILED = "costeer's car, compiled"
+PLAIN = "costeer's car, plain Python"
+_INSTALL = "not installed; install it with: pip install 'costeer[bench]'"
+
+
+@compiled
+def steering(time: float) -> float:
+    """Road-wheel angle of the manoeuvre [rad]."""
+    return AMPLITUDE * xp.sin(2.0 * math.pi * time / SECONDS)
+
+
+@compiled
+def drive(car: CarParameters, num_steps: int) -> VehicleState:
+    """Take our car through the manoeuvre, Runge-Kutta at the plant's step."""
+    state = VehicleState(0.0, 0.0, 0.0, SPEED, 0.0, 0.0, 0.0)
+    for k in range(num_steps):
+        motion = VehicleInput(car, steering(k * PLANT_DT), 0.0)
+        state = rk4(vehicle_rate, state, motion, PLANT_DT)
+    return state
+
+
+@entry
+def drive_compiled(car: CarParameters, num_steps: int) -> VehicleState:
+    """`drive` as machine code."""
+    return drive(car, num_steps)
+
+
+def measure_peers(effort: Effort) -> Outcome:
+    """Vehicle-seconds per second of each plant, and the ratios to ours."""
+    car = CarParameters()
+    outcome: Outcome = [
+        _speed(COMPILED, lambda n: drive_compiled(car, n), PLANT_DT, effort),
+        _speed(PLAIN, lambda n: drive(car, n), PLANT_DT, effort),
+        *_highway_env(effort),
+        *_commonroad(effort),
+    ]
+    return [*outcome, *ratios([o for o in outcome if isinstance(o, Figure)])]
+
+
+def _speed(
+    name: str,
+    run: Callable[[int], object],
+    dt: float,
+    effort: Effort,
+    remark: str = "",
+) -> Figure:
+    """Speed of a plant that `run` takes through a number of steps."""
+    steps = round(SECONDS / dt)
+    run(2)
+    times = seconds_of(lambda: run(steps), effort.rounds)
+    return figure("plant", name, UNIT, SECONDS / times, remark or f"{1 / dt:.0f} Hz")
+
+
+def ratios(figures: list[Figure]) -> list[Figure]:
+    """How many times faster the compiled car is than each other plant."""
+    ours = next(f for f in figures if f.name == COMPILED)
+    return [
+        Figure(
+            "plant",
+            f"compiled over {other.name}",
+            "x",
+            ours.median / other.median,
+            ours.low / other.high,
+            ours.high / other.low,
+            "compilation alone" if other.name == PLAIN else "",
+        )
+        for other in figures
+        if other is not ours
+    ]
+
+
+def _highway_env(effort: Effort) -> Outcome:
+    """highway-env's dynamic bicycle by its own `step`, without a road."""
+    name = "highway-env, dynamic bicycle"
+    try:
+        from highway_env.vehicle.dynamics import BicycleVehicle
+    except ImportError:
+        return [Skipped("plant", name, _INSTALL)]
+
+    def run(num_steps: int) -> float:
+        car = BicycleVehicle(None, [0.0, 0.0], 0.0, SPEED)
+        for k in range(num_steps):
+            car.action = {"steering": steering(k * PLANT_DT), "acceleration": 0.0}
+            car.step(PLANT_DT)
+        return float(car.position[1])
+
+    return [_speed(name, run, PLANT_DT, effort)]
+
+
+def _commonroad(effort: Effort) -> Outcome:
+    """CommonRoad's single track: our Runge-Kutta, and odeint anew at every tick."""
+    name = "CommonRoad, single track"
+    try:
+        from vehiclemodels.parameters_vehicle2 import parameters_vehicle2
+        from vehiclemodels.vehicle_dynamics_st import vehicle_dynamics_st
+    except ImportError:
+        return [Skipped("plant", name, _INSTALL)]
+    car = parameters_vehicle2()
+
+    def rate(state: NDArray[np.float64], time: float) -> NDArray[np.float64]:
+        return np.array(vehicle_dynamics_st(state, [_steering_rate(time), 0.0], car))
+
+    return [
+        _speed(f"{name}, Runge-Kutta", lambda n: _rk4_run(rate, n), PLANT_DT, effort),
+        _speed(
+            f"{name}, odeint",
+            lambda n: _odeint_run(rate, n),
+            TICK,
+            effort,
+            "restarted at 60 Hz, its own steps between",
+        ),
+    ]
+
+
+def _steering_rate(time: float) -> float:
+    """Rate of the road-wheel angle of the manoeuvre [rad/s]."""
+    frequency = 2.0 * math.pi / SECONDS
+    return AMPLITUDE * frequency * math.cos(frequency * time)
+
+
+_COMMONROAD_START = (0.0, 0.0, 0.0, SPEED, 0.0, 0.0, 0.0)
+Rate = Callable[[NDArray[np.float64], float], NDArray[np.float64]]
+
+
+def _rk4_run(rate: Rate, num_steps: int) -> float:
+    state, dt = np.array(_COMMONROAD_START), PLANT_DT
+    for k in range(num_steps):
+        time = k * dt
+        k1 = rate(state, time)
+        k2 = rate(state + dt / 2.0 * k1, time + dt / 2.0)
+        k3 = rate(state + dt / 2.0 * k2, time + dt / 2.0)
+        k4 = rate(state + dt * k3, time + dt)
+        state = state + dt / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4)
+    return float(state[1])
+
+
+def _odeint_run(rate: Rate, num_ticks: int) -> float:
+    from scipy.integrate import odeint
+
+    state = np.array(_COMMONROAD_START)
+    for k in range(num_ticks):
+        state = odeint(rate, state, [k * TICK, (k + 1) * TICK])[-1]
+    return float(state[1])

@@ -1,0 +1,105 @@
+"""`costeer bench`: how fast it is here, and beside two peers."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from costeer.cli.console import note, print_table
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from costeer.bench.timing import Effort, Figure, Outcome, Skipped
+
+
+def bench(
+    quick: Annotated[
+        bool, typer.Option("--quick", help="Fewer rounds and shorter trials.")
+    ] = False,
+    json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
+) -> None:
+    """Measure the speed of the control step, a trial and a batch.
+
+    Each number is the median of some rounds, with the lowest and the highest. Peers
+    come with: pip install 'costeer[bench]'.
+
+    Example:
+        costeer bench
+        costeer bench --quick --json
+    """
+    from costeer.bench.machine import machine
+    from costeer.bench.timing import FULL, QUICK, Figure
+
+    about = machine()
+    outcome = _measure(QUICK if quick else FULL)
+    figures = [found for found in outcome if isinstance(found, Figure)]
+    skipped = [found for found in outcome if not isinstance(found, Figure)]
+    if json:
+        _print_json(about, figures, skipped)
+    else:
+        _print_text(about, figures, skipped)
+
+
+def _measure(effort: Effort) -> Outcome:
+    """Everything, group by group."""
+    from costeer.bench.control import measure_control_step, measure_network
+    from costeer.bench.peers import measure_peers
+    from costeer.bench.start import measure_start
+    from costeer.bench.trials import measure_engines, measure_trials
+
+    groups: dict[str, Callable[[Effort], Outcome]] = {
+        "control step": measure_control_step,
+        "network": measure_network,
+        "trials": measure_trials,
+        "engines": measure_engines,
+        "plants": measure_peers,
+        "start": measure_start,
+    }
+    outcome: Outcome = []
+    for name, measure in groups.items():
+        note(f"measuring: {name}")
+        outcome += measure(effort)
+    return outcome
+
+
+def _print_text(
+    about: dict[str, str | int], figures: list[Figure], skipped: list[Skipped]
+) -> None:
+    for name, value in about.items():
+        typer.echo(f"{name:10} {value}")
+    rows = [
+        [
+            found.name,
+            found.unit,
+            *(_short(value) for value in (found.median, found.low, found.high)),
+            found.remark,
+        ]
+        for found in figures
+    ]
+    print_table(["measured", "unit", "median", "lowest", "highest", "remark"], rows)
+    for missing in skipped:
+        typer.echo(f"skipped: {missing.name}: {missing.reason}")
+    typer.echo(
+        "Most of a ratio to a peer is compilation, not a better method: compare the "
+        "peer with costeer's car in plain Python."
+    )
+
+
+def _short(value: float) -> str:
+    """Three digits, no power of ten."""
+    return f"{value:.0f}" if abs(value) >= 100.0 else f"{value:.3g}"
+
+
+def _print_json(
+    about: dict[str, str | int], figures: list[Figure], skipped: list[Skipped]
+) -> None:
+    import json
+
+    answer = {
+        "machine": about,
+        "figures": [found._asdict() for found in figures],
+        "skipped": [missing._asdict() for missing in skipped],
+    }
+    typer.echo(json.dumps(answer, indent=2, ensure_ascii=False))

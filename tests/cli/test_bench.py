@@ -1,0 +1,46 @@
+"""`costeer bench` prints machine, figures and what was skipped."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+
+from costeer.bench.timing import FULL, QUICK, Effort, Figure, Outcome, Skipped
+from costeer.cli import bench, main
+
+ASKED: list[Effort] = []
+
+
+@pytest.fixture(autouse=True)
+def without_measuring(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Made-up figures instead of a minute of work."""
+
+    def measured(effort: Effort) -> Outcome:
+        ASKED.append(effort)
+        return [
+            Figure("control step", "control step, p99", "us", 1.1, 1.0, 1234.5, "kept"),
+            Skipped("plant", "highway-env", "not installed"),
+        ]
+
+    ASKED.clear()
+    monkeypatch.setattr(bench, "_measure", measured)
+
+
+def test_the_table_has_median_and_spread(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["bench"]) == 0
+    shown = capsys.readouterr().out
+    assert "processor" in shown
+    assert all(word in shown for word in ("control step, p99", "1.1", "1234", "kept"))
+    assert "skipped: highway-env: not installed" in shown
+    assert "compilation" in shown
+    assert ASKED == [FULL]
+
+
+def test_json_holds_the_same(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["bench", "--quick", "--json"]) == 0
+    told = json.loads(capsys.readouterr().out)
+    assert told["figures"][0]["median"] == 1.1
+    assert told["skipped"][0]["name"] == "highway-env"
+    assert told["machine"]["cores"] >= 1
+    assert ASKED == [QUICK]
