@@ -62,6 +62,7 @@ def main() -> int:
         path_error=max(c.path_error for f in every for c in f.changes),
         overshoot=max(c.overshoot for f in every for c in f.changes),
         hunting=max(f.hunting for f in every),
+        wheel_hunting=max(f.wheel_hunting for f in every),
     )
     for name, value, bound in zip(Bounds._fields, worst, bounds, strict=True):
         print(f"largest {name}: {value:.3f}, bound {bound}")

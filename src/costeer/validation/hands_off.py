@@ -50,12 +50,16 @@ class Bounds(NamedTuple):
         path_error: Car to path, from the trigger on [m].
         overshoot: Beyond the new lane's centre [m].
         hunting: Amplitude of the lateral position long after [m].
+        wheel_hunting: Amplitude of the steering-wheel angle then [rad]. The
+            specification has no such bound; it shows a wheel that swings although the
+            car hardly moves.
     """
 
     settling_time: Real = 2.7
     path_error: Real = 0.14
     overshoot: Real = 0.10
     hunting: Real = 0.08
+    wheel_hunting: Real = 0.02
 
 
 class ChangeFigures(NamedTuple):
@@ -202,6 +206,7 @@ def missed_bounds(figures: HandsOffFigures, bounds: Bounds) -> list[str]:
         "hunting": figures.hunting,
         "path_error": max(change.path_error for change in figures.changes),
         "overshoot": max(change.overshoot for change in figures.changes),
+        "wheel_hunting": figures.wheel_hunting,
     }
     place = f"{figures.car} at {figures.speed * 3.6:.0f} km/h"
     return [
