@@ -1,0 +1,26 @@
+"""The example of docs/drivers.md runs, and its table is that of the code."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+
+from costeer.validation.manual import TARGETS
+
+PAGE = Path(__file__).parents[2] / "docs" / "drivers.md"
+
+
+def test_example_of_the_page_runs(capsys: pytest.CaptureFixture[str]) -> None:
+    (code,) = re.findall(r"^```python\n(.*?)^```", PAGE.read_text("utf-8"), re.M | re.S)
+    exec(compile(code, str(PAGE), "exec"), {})
+    assert re.search(r"N·m/rad, reliance 0\.\d\d\nplans", capsys.readouterr().out)
+
+
+def test_the_page_shows_every_target_with_its_range() -> None:
+    text = PAGE.read_text("utf-8")
+    for target in TARGETS:
+        line = next(x for x in text.splitlines() if x.startswith(f"| {target.name} |"))
+        assert f"{target.quantity} [{target.unit}]" in line
+        assert f"{target.low:g} to {target.high:g}" in line
