@@ -31,6 +31,19 @@ PATIENT = ControllerParameters(
     consistency=ConsistencyParameters(inconsistency_threshold=1e9)
 )
 MIRRORED_ROAD = ControllerParameters(road=RoadParameters(overtaking_side=1.0))
+UNPLANNED = {
+    "longitudinal_acceleration",
+    "lateral_velocity",
+    "lateral_acceleration",
+    "steering_wheel_angle",
+    "steering_wheel_rate",
+    "front_slip_angle",
+    "driver_torque",
+    "head_yaw",
+    "distance_to_adjacent_lane",
+}
+"""What no plan is made of."""
+
 START = controller.initial_state(ROAD, LEFT_LANE)
 
 
@@ -76,6 +89,14 @@ def test_a_request_from_outside_starts_one_at_once() -> None:
     _, signals = run(PARAMETERS, START, [sample()], requested=True)
     assert signals[0].target.mode == LANE_CHANGING
     assert signals[0].intention
+
+
+def test_in_a_conflict_an_intention_starts_no_lane_change() -> None:
+    state, signals = run(PARAMETERS, START, CONFLICT[:70])
+    assert not signals[-1].consistency.consistent
+    _, signals = run(PARAMETERS, state, CONFLICT[70:75], requested=True)
+    assert signals[0].intention
+    assert {s.target.mode for s in signals} == {LANE_KEEPING}
 
 
 def test_a_conflict_fades_the_gain_then_the_plan_is_made_anew() -> None:
@@ -170,7 +191,11 @@ def test_one_lost_value_leaves_no_trace_after_100_ms(name: str) -> None:
     samples = weaving(120, driver_torque=0.1)
     lost = samples[100]._replace(**{name: math.nan})
     _, whole = run(PATIENT, START, samples)
-    _, gap = run(PATIENT, START, [*samples[:100], lost, *samples[101:]])
+    state, before = run(PATIENT, START, samples[:100])
+    # Even a lane change that is asked for then is not planned from what was lost.
+    state, at = run(PATIENT, state, [lost], requested=name not in UNPLANNED)
+    _, after = run(PATIENT, state, samples[101:])
+    gap = before + at + after
     assert all(math.isfinite(s.applied_torque) for s in gap)
     assert torques(gap)[-1] == pytest.approx(torques(whole)[-1])
     assert gap[-1].target == whole[-1].target

@@ -116,6 +116,11 @@ def test_a_replan_keeps_the_lane_that_the_car_is_in_and_ends_no_path() -> None:
         assert target.lateral_position == -3.5 * (LEFT_LANE - lane)
 
 
+def test_a_replan_at_the_end_of_a_path_counts_as_a_replan() -> None:
+    state, _ = stepped(CHANGING, sample(longitudinal_position=LENGTH), replan=True)
+    assert (state.mode, state.path_ended) == (LANE_KEEPING, False)  # so: no lock
+
+
 def test_a_line_crossed_without_a_trigger_does_not_move_the_target() -> None:
     across = sample(60, lane=RIGHT_LANE, lateral_position=-2.2, side=1.0)
     state, target = stepped(KEEPING, across)

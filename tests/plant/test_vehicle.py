@@ -173,6 +173,15 @@ def test_the_measured_acceleration_is_that_of_the_ground_path() -> None:
     assert left == pytest.approx(across * cosine - along * sine, abs=1e-5)
 
 
+def test_steered_tyres_brake_the_car() -> None:
+    # A front force F at the angle δ pushes -F sin δ forward and F cos δ to the left.
+    state = straight(DEFAULT_CAR, SPEED)
+    motion = VehicleInput(DEFAULT_CAR, 0.3, state.drive)
+    forward, left = accelerations(state, motion, 6000.0, 0.0)
+    assert forward == pytest.approx(-4.0 * math.sin(0.3))  # 6000 N on 1500 kg
+    assert left == pytest.approx(4.0 * math.cos(0.3))
+
+
 def test_a_braking_car_stops_and_stays() -> None:
     state = straight(DEFAULT_CAR, 5.0)
     motion = VehicleInput(DEFAULT_CAR, 0.0, drive_command(DEFAULT_CAR, 0.0, 1.0))
