@@ -1,82 +1,161 @@
-"""Rows of docs/paper.md name functions and tests that exist."""
+"""Rows of docs/paper.md are whole, and name functions and tests that exist."""
 
 from __future__ import annotations
 
 import ast
 import re
+from functools import cache
 from importlib import import_module
-from importlib.util import find_spec
 from typing import NamedTuple
 
 import pytest
 
-from tests.architecture.source import ROOT
+from tests.architecture.source import ROOT, tree
 
+TEXT = (ROOT / "docs" / "paper.md").read_text("utf-8")
+HEADER = ["Item", "It says", "Function", "Test", "Our reading"]
+TABLE_SECTIONS = {"Equations", "Tables", "Figures", "Sections"}
 NAME = re.compile(r"`([^`]+)`")
+LINK = re.compile(r"\]\(#([a-z0-9-]+)\)")
+
+EQUATIONS = {
+    *(f"Eq. ({number})" for number in range(1, 14) if number != 12),
+    "Eq. (12), gain",
+    "Eq. (12), Sec. III-F",
+}
+TABLES = {f"Table {number}" for number in ("I", "II", "III", "IV")}
+FIGURES = {2, 3, 4, 5, 6, 9, 10, *range(11, 23)}
+"""Those on which the package rests."""
 
 
 class Row(NamedTuple):
-    """A row of a table of docs/paper.md."""
+    """A row of one of the page's tables of the paper."""
 
     item: str
-    functions: tuple[str, ...]
-    tests: tuple[str, ...]
+    says: str
+    function: str
+    test: str
+    reading: str
 
 
-def rows() -> list[Row]:
-    """Rows of every table with a function and a test column."""
-    text = (ROOT / "docs" / "paper.md").read_text("utf-8")
-    cells = [
-        [cell.strip() for cell in line.strip().strip("|").split("|")]
-        for line in text.splitlines()
-        if line.startswith("|")
-    ]
-    return [
-        Row(c[0], tuple(NAME.findall(c[2])), tuple(NAME.findall(c[3])))
-        for c in cells
-        if len(c) == 5 and not c[0].startswith(("Item", "---", ":--"))
-    ]
+def cells(line: str) -> list[str]:
+    """Cells of a line of a table."""
+    return [cell.strip() for cell in line.strip().strip("|").split("|")]
 
 
-def exists(name: str) -> bool:
-    """Whether a dotted name below `costeer` is a module or something in one."""
-    try:
-        if find_spec(f"costeer.{name}") is not None:
-            return True
-    except ModuleNotFoundError:
-        pass
+def rows(text: str) -> list[Row]:
+    """Rows of every table with the header of this page."""
+    found, within = [], False
+    for line in text.splitlines():
+        if not line.startswith("|"):
+            within = False
+        elif cells(line) == HEADER:
+            within = True
+        elif within and not line.startswith("|---"):
+            found.append(Row(*cells(line)))
+    return found
+
+
+ROWS = rows(TEXT)
+
+
+def names(cell: str) -> list[str]:
+    """Names in a cell that holds nothing but names between commas."""
+    found = NAME.findall(cell)
+    rest = NAME.sub("", cell).replace(",", "").strip()
+    return [] if rest else found
+
+
+def is_importable(name: str) -> bool:
+    """Whether a dotted name is a function or a class of the package."""
     module, _, attribute = name.rpartition(".")
+    if not module.startswith("costeer."):
+        return False
     try:
-        return hasattr(import_module(f"costeer.{module}"), attribute)
+        return callable(getattr(import_module(module), attribute, None))
     except ModuleNotFoundError:
         return False
+
+
+@cache
+def functions_of(path: str) -> frozenset[str]:
+    """Names of the test functions of a file."""
+    file = ROOT / path
+    if not path.startswith("tests/") or not file.is_file():
+        return frozenset()
+    found = (node for node in tree(file).body if isinstance(node, ast.FunctionDef))
+    return frozenset(node.name for node in found if node.name.startswith("test_"))
 
 
 def is_a_test(name: str) -> bool:
-    """Whether `file` or `file::function` is a test below `tests`."""
+    """Whether `tests/file.py::test_function` is a test."""
     path, _, function = name.partition("::")
-    file = ROOT / "tests" / path
-    if not file.exists():
-        return False
-    tree = ast.parse(file.read_text("utf-8"))
-    found = {node.name for node in ast.walk(tree) if isinstance(node, ast.FunctionDef)}
-    return not function or function in found
+    return function in functions_of(path)
 
 
-def test_the_paper_has_a_row_for_each_equation_table_and_figure() -> None:
-    items = " ".join(row.item for row in rows())
-    equations = [f"Eq. ({n})" for n in range(1, 14)]
-    tables = [f"Table {n}" for n in ("I", "II", "III", "IV")]
-    figures = [f"Fig. {n}" for n in range(1, 23)]
-    listed = {*re.findall(r"Eq\. \(\d+\)|Table [IV]+|Fig\. \d+", items)}
-    assert [i for i in (*equations, *tables, *figures) if i not in listed] == []
+def numbers(item: str) -> set[int]:
+    """Numbers of figures in an item, ranges written out."""
+    found = {int(number) for number in re.findall(r"\d+", item)}
+    if match := re.search(r"(\d+) to (\d+)", item):
+        found |= set(range(int(match[1]), int(match[2]) + 1))
+    return found
 
 
-@pytest.mark.parametrize("row", rows(), ids=lambda row: row.item)
-def test_functions_of_a_row_exist(row: Row) -> None:
-    assert [name for name in row.functions if not exists(name)] == []
+def anchor(title: str) -> str:
+    """What a link to a section bears."""
+    return re.sub(r"[^a-z0-9]+", "-", title.lower()).strip("-")
 
 
-@pytest.mark.parametrize("row", rows(), ids=lambda row: row.item)
+def test_every_equation_has_one_row() -> None:
+    listed = [row.item for row in ROWS if row.item.startswith("Eq.")]
+    assert sorted(listed) == sorted(EQUATIONS)
+
+
+def test_every_table_has_one_row() -> None:
+    listed = [row.item for row in ROWS if row.item.startswith("Table")]
+    assert sorted(listed) == sorted(TABLES)
+
+
+def test_every_figure_that_is_used_has_a_row() -> None:
+    listed = [numbers(row.item) for row in ROWS if row.item.startswith("Fig")]
+    assert set().union(*listed) == FIGURES
+
+
+def test_no_item_stands_twice() -> None:
+    items = [row.item for row in ROWS]
+    assert len(items) == len(set(items))
+
+
+@pytest.mark.parametrize("row", ROWS, ids=lambda row: row.item)
+def test_a_row_has_no_empty_cell(row: Row) -> None:
+    assert all(row)
+
+
+@pytest.mark.parametrize("row", ROWS, ids=lambda row: row.item)
+def test_functions_of_a_row_can_be_imported(row: Row) -> None:
+    found = names(row.function)
+    assert found
+    assert [name for name in found if not is_importable(name)] == []
+
+
+@pytest.mark.parametrize("row", ROWS, ids=lambda row: row.item)
 def test_tests_of_a_row_exist(row: Row) -> None:
-    assert [name for name in row.tests if not is_a_test(name)] == []
+    found = names(row.test)
+    assert found
+    assert [name for name in found if not is_a_test(name)] == []
+
+
+def test_every_section_explains_a_row() -> None:
+    titles = set(re.findall(r"^## (.+)$", TEXT, re.MULTILINE)) - TABLE_SECTIONS
+    linked = {link for row in ROWS for link in LINK.findall(row.reading)}
+    assert {anchor(title) for title in titles} == linked
+
+
+def test_what_is_missing_would_be_seen() -> None:
+    (row,) = rows("| " + " | ".join(HEADER) + " |\n|---|---|\n| a | b | | `c` | d |")
+    assert not all(row)
+    assert names("`costeer.base.bezier.quintic` and more") == []
+    assert not is_importable("costeer.base.bezier")
+    assert not is_importable("costeer.base.bezier.cubic")
+    assert not is_a_test("tests/base/test_bezier.py")
+    assert not is_a_test("tests/base/test_bezier.py::test_of_a_cubic")

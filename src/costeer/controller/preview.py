@@ -3,7 +3,7 @@
 The column terms of Eq. (4) belong to the planned motion, see docs/paper.md. Target
 quantities are taken at the car and only the error is extrapolated by the preview
 time; looking the path up at the preview point instead is the other reading
-(`look_ahead`), which tracks two to three times worse.
+(`look_ahead`), in which the car turns in before its path does.
 """
 
 from __future__ import annotations
