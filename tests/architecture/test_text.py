@@ -60,3 +60,18 @@ def test_make_targets_of_a_page_exist(page: str) -> None:
 def test_readme_shows_the_main_job() -> None:
     lines = code_lines((ROOT / "README.md").read_text("utf-8"))
     assert any(line.startswith("make study") for line in lines)
+
+
+def test_the_page_of_commands_has_them_all() -> None:
+    lines = code_lines((ROOT / "docs" / "commands.md").read_text("utf-8"))
+    shown = {m[1] for line in lines if (m := re.match(r"costeer ([a-z]+)", line))}
+    assert shown == set(CommandGroup.summaries)
+
+
+def test_the_index_leads_to_every_page() -> None:
+    docs = ROOT / "docs"
+    linked = set(
+        re.findall(r"\]\(([^)#]+\.md)\)", (docs / "index.md").read_text("utf-8"))
+    )
+    pages = {page.relative_to(docs).as_posix() for page in docs.rglob("*.md")}
+    assert linked == pages - {"index.md"}
