@@ -10,6 +10,7 @@ from costeer.bench.timing import FULL, QUICK, Effort, Figure, Outcome, Skipped
 from costeer.cli import bench, main
 
 ASKED: list[Effort] = []
+MEASURED = bench._measure
 
 
 @pytest.fixture(autouse=True)
@@ -44,3 +45,27 @@ def test_json_holds_the_same(capsys: pytest.CaptureFixture[str]) -> None:
     assert told["skipped"][0]["name"] == "highway-env"
     assert told["machine"]["cores"] >= 1
     assert ASKED == [QUICK]
+
+
+def test_every_group_is_measured_once_in_its_order(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    asked = []
+    for place in (
+        "control.measure_control_step",
+        "control.measure_network",
+        "trials.measure_trials",
+        "trials.measure_engines",
+        "peers.measure_peers",
+        "start.measure_start",
+    ):
+
+        def measure(effort: Effort, place: str = place) -> Outcome:
+            asked.append((place, effort))
+            return [Skipped("", place, "")]
+
+        monkeypatch.setattr(f"costeer.bench.{place}", measure)
+    outcome = MEASURED(QUICK)
+    assert [(found.name, QUICK) for found in outcome] == asked
+    assert len(asked) == 6
+    assert "measuring: start" in capsys.readouterr().err

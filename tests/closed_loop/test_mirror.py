@@ -112,7 +112,7 @@ def test_a_column_mirrors(name: str) -> None:
     place = ROW_COLUMNS.index(name)
     here, there = (trial(mirrored=side)[:, place] for side in (False, True))
     # Positions near 0 and near -3.5 m are rounded differently, by 4e-16; the loop damps
-    # that after raising it to 2e-11; no verdict may fall a step apart.
+    # that after raising it to 2e-11 at most; no verdict may fall a step apart.
     scale = max(1.0, float(np.nanmax(np.abs(here))))
     np.testing.assert_allclose(there, mirror(name, here), rtol=0.0, atol=1e-9 * scale)
 

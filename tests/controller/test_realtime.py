@@ -70,6 +70,16 @@ def test_packed_step_gives_the_signals_and_the_state_of_the_python_step() -> Non
     assert min(gains) < 0.5  # the fade was part of the run
 
 
+def test_compiled_and_plain_step_between_arrays_agree() -> None:
+    here, there = (packed_controller(PARAMETERS, LEFT_LANE) for _ in range(2))
+    plain = control_step.py_func  # type: ignore[attr-defined]  # Numba adds it
+    for given in inputs()[:120]:
+        for memory, run in ((here, control_step), (there, plain)):
+            pack(memory.given, given)
+            run(*memory, DT)
+        np.testing.assert_allclose(here.signals, there.signals, 1e-12, 1e-15)
+
+
 def test_packed_signals_read_as_the_named_tuple() -> None:
     memory = packed_controller(PARAMETERS, LEFT_LANE)
     pack(memory.given, inputs()[0])

@@ -9,6 +9,8 @@ from functools import cache
 import numpy as np
 import pytest
 
+from costeer.intention.gru import random_weights
+from costeer.intention.weights import intention_network
 from costeer.loop.columns import COLUMNS, METADATA_FIELDS, TrialRecord
 from costeer.loop.scenario import TrialSetup
 from costeer.loop.trial import GUIDANCE_COLUMNS, simulate_trial, trial_duration
@@ -152,6 +154,16 @@ def test_no_intention_is_asked_when_it_is_off() -> None:
     columns = trial(STRONG._replace(intention="off")).columns
     assert np.isnan(columns["crossing_probability"]).all()
     assert not columns["intention"].any()
+
+
+def test_a_network_that_is_given_is_asked_and_named() -> None:
+    network = intention_network(random_weights(4, 1), {})
+    setup = STRONG._replace(intention="network", length=200.0)
+    record = simulate_trial(setup, network=network)
+    assert record.metadata["intention_model_hash"] == network.hash
+    probability = record.columns["crossing_probability"]
+    assert np.isnan(probability[:179]).all()  # no verdict before the window is full
+    assert np.isfinite(probability[179:]).all()
 
 
 def test_metadata_says_what_was_run() -> None:

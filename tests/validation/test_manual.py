@@ -7,6 +7,7 @@ from functools import cache
 
 import pytest
 
+from costeer.validation import manual
 from costeer.validation.manual import (
     PLANNED_CHANGES,
     TARGETS,
@@ -81,6 +82,15 @@ def test_progress_counts_every_trial() -> None:
     told: list[int] = []
     drive_population(FRESH_SEED, 3, progress=told.append)
     assert told == [1, 1, 1]
+
+
+def test_a_trial_that_fails_is_told_as_it_is(monkeypatch: pytest.MonkeyPatch) -> None:
+    def interrupted(seed: int, participant: int) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(manual, "manual_trial", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        drive_population(FRESH_SEED, 2)
 
 
 def test_a_miss_is_the_distance_to_the_range() -> None:

@@ -9,8 +9,9 @@ import pytest
 from numpy.typing import NDArray
 
 from costeer.controller.consistency import ConsistencyParameters
-from costeer.loop.scenario import PILOT_SEED, trial_driver
+from costeer.loop.scenario import PILOT_SEED, TrialSetup, trial_driver
 from costeer.loop.trial import simulate_trial
+from costeer.validation import pilot
 from costeer.validation.pilot import (
     FACTOR,
     PERCENTILE,
@@ -53,6 +54,17 @@ def test_gaps_are_counted_only_where_the_torques_oppose() -> None:
     opposed = columns["torque_agreement"] < 0.0
     judged = opposed & np.isfinite(columns["guidance_pseudo_work"])
     assert gaps_of_first()[0].size == np.count_nonzero(judged) < opposed.size
+
+
+def test_a_pilot_run_that_fails_is_told_as_it_is(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    def failing(setup: TrialSetup) -> None:
+        raise ValueError("the road is closed")
+
+    monkeypatch.setattr(pilot, "opposed_gaps", failing)
+    with pytest.raises(ValueError, match="the road is closed"):
+        pilot_threshold(1)
 
 
 @pytest.mark.slow
