@@ -93,6 +93,10 @@ class TrialSetup(NamedTuple):
     prediction_horizon: Real = PREDICTION_HORIZON
 
 
+FASTEST = 31.0
+"""Greatest speed of a trial [m/s]: the guidance is verified up to 110 km/h."""
+
+
 class _Range(NamedTuple):
     """Smallest and largest value that is accepted, and the unit."""
 
@@ -104,7 +108,7 @@ class _Range(NamedTuple):
 _RANGES = {
     "strength_factor": _Range(0.0, 1.0, "-"),
     "length": _Range(100.0, 200_000.0, "m"),
-    "speed": _Range(5.0, 50.0, "m/s"),
+    "speed": _Range(5.0, FASTEST, "m/s"),
     "initial_offset": _Range(-1.5, 1.5, "m"),
     "hold_time": _Range(0.0, 10.0, "s"),
     "inconsistency_threshold": _Range(0.0, 100.0, "W"),

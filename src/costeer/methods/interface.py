@@ -1,8 +1,10 @@
 """What a method of assistance is: parameters, a state, and one step.
 
-The closed loop calls `step(parameters, state, measurement, crossing_probability,
-requested, dt)` and takes the applied torque from the signals it returns. A method
-composes controller stages; it never sees the driver or the plant.
+A method's `step(parameters, state, measurement, crossing_probability, requested, dt)`
+returns its signals, the applied torque among them. A method composes controller
+stages; it never sees the driver or the plant. `ibhs` and `manual` share one step, so
+that the closed loop is compiled once (loop/step.py calls it); a method with a step of
+its own brings a compiled loop of its own.
 """
 
 from __future__ import annotations
