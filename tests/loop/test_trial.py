@@ -53,7 +53,7 @@ def test_a_longer_trial_begins_like_a_shorter_one() -> None:
 
 
 def test_python_and_numba_give_the_same_trial() -> None:
-    setup = STRONG._replace(length=400.0, trigger_times=(5.0,))
+    setup = STRONG._replace(length=250.0, trigger_times=(4.0,))
     for name, values in trial(setup, "python").columns.items():
         compiled = trial(setup).columns[name]
         if values.dtype.kind == "f":

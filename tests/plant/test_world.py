@@ -68,7 +68,7 @@ def test_a_mirrored_torque_gives_the_mirrored_world() -> None:
 
 def test_half_the_step_halves_the_error_of_the_world() -> None:
     inputs = Inputs(1.0, 0.5, HOLDING_SPEED)
-    reference = moved(15_360, inputs).vehicle.lateral_position
+    reference = moved(7_680, inputs).vehicle.lateral_position
     errors = [
         abs(moved(num_steps, inputs).vehicle.lateral_position - reference)
         for num_steps in (240, 480)
