@@ -19,6 +19,7 @@ from costeer.loop.step import (
     sense,
     step,
 )
+from costeer.plant.parameters import ColumnParameters
 
 QUIET = DriverNoise(*([0.0] * len(DriverNoise._fields)))._replace(
     look_uniform=1.0, glance_uniform=1.0, leader_uniform=-1.0
@@ -56,7 +57,10 @@ def test_a_torque_acts_one_control_step_after_its_measurement() -> None:
     first, second, *_ = run(hands_off_loop(offset=0.5), 3)
     assert first.torque_command < 0.0  # computed from the first sample
     assert first.world.column.motor_torque == 0.0  # and not yet given
-    assert second.world.column.motor_torque < 0.0
+    # From rest, the motor's lag lets through this much of it in one control step.
+    share = 1.0 - math.exp(-DT / ColumnParameters().motor_lag)
+    given = second.world.column.motor_torque
+    assert given == pytest.approx(share * first.torque_command, rel=1e-9)
 
 
 def test_finer_plant_steps_change_a_run_little() -> None:

@@ -9,8 +9,6 @@ import pytest
 
 from costeer.loop.columns import TrialRecord
 from costeer.validation.glances import (
-    GLANCE_ANGLE,
-    HEAD_YAW_SCALE,
     false_glance_share,
     first_glance_lead,
     glance_before_change,
@@ -18,7 +16,9 @@ from costeer.validation.glances import (
 )
 
 SECONDS = 60.0
-ENOUGH = 1.01 * GLANCE_ANGLE / HEAD_YAW_SCALE
+ENOUGH = 1.01 * 0.25 / (math.pi / 2.0)
+"""Jain et al. (2015) count 0.25 rad; a record's head yaw of 1 is 90 deg."""
+
 CHANGE = {"direction": -1, "crossing_time": 40.0}
 
 
