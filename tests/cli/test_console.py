@@ -9,8 +9,12 @@ import pytest
 from costeer.cli import console
 
 
-def test_a_log_gets_a_line_for_each_tenth(capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_log_gets_a_line_at_the_start_and_for_each_tenth(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
     with console.progress("Trials", 84) as advance:
+        # Said before the first piece is done: the first trial may compile for long.
+        assert capsys.readouterr().err == "Trials: 0 of 84\n"
         for _ in range(84):
             advance(1)
     shown = capsys.readouterr()
@@ -24,7 +28,9 @@ def test_resumed_work_starts_where_it_stopped(
 ) -> None:
     with console.progress("Trials", 10, done=8) as advance:
         advance(1)
-    assert capsys.readouterr().err.startswith("Trials: 9 of 10, ")
+    first, second = capsys.readouterr().err.splitlines()
+    assert first == "Trials: 8 of 10"
+    assert second.startswith("Trials: 9 of 10, ")
 
 
 def test_nothing_to_do_prints_nothing(capsys: pytest.CaptureFixture[str]) -> None:
@@ -56,3 +62,13 @@ def test_numbers_of_a_table_lean_right(capsys: pytest.CaptureFixture[str]) -> No
     assert "Times" in lines[0]
     assert any("slow [one] │ 10.5" in line for line in lines)
     assert any("fast       │    2" in line for line in lines)
+
+
+def test_a_narrow_terminal_loses_no_letter_of_a_table(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setenv("COLUMNS", "24")
+    console.print_table(["measure", "s"], [["line_crossing_time_median", "10.5"]])
+    rows = [line.split("│") for line in capsys.readouterr().out.splitlines()]
+    shown = "".join(cells[1].strip() for cells in rows if len(cells) == 4)
+    assert shown == "line_crossing_time_median"

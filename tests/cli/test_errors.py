@@ -50,6 +50,8 @@ def test_exit_code_of_a_command_is_handed_on() -> None:
             "free some space and run the same command",
         ),
         (PermissionError(errno.EACCES, "x", "out"), "choose a place"),
+        (FileExistsError(errno.EEXIST, "x", "s/figures"), "in the way: move it"),
+        (ValueError("row 1 is '\x1b[2J\x00'"), "row 1 is '?[2J?'\n"),
         (ModuleNotFoundError("x", name="optax"), "pip install 'costeer[train]'"),
         (ValueError(), "ValueError"),
     ],
@@ -118,3 +120,36 @@ def test_system_error_says_what_the_system_says(
 ) -> None:
     exit_code_of(raising(OSError(errno.EMFILE, "")))
     assert capsys.readouterr().err == f"costeer: {os.strerror(errno.EMFILE)}\n"
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["--participants", "abc"], "'--participants': 'abc' is not a whole number"),
+        (["--participants", "1.5"], "'--participants': '1.5' is not a whole number"),
+        (["--length", "12,5"], "'--length': '12,5' is not a number, as 12.5"),
+        (["--speed", "fast"], "'fast' is not a speed; give metres per second"),
+        (["--colour"], "No such option: --colour"),
+    ],
+)
+def test_a_word_that_cannot_be_read_is_named_with_the_way_out(
+    words: list[str], said: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["study", "--out", "never-made", *words]) == 2
+    shown = capsys.readouterr().err
+    assert said in shown
+    assert shown.endswith("; see costeer study --help\n")
+    assert shown.count("\n") == 1
+
+
+def test_a_repeated_option_names_the_word_that_is_wrong(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    words = ["--trigger-at", "3", "--trigger-at", "soon"]
+    assert main(["simulate", "--out", "never-made.parquet", *words]) == 2
+    assert "'soon' is not a number" in capsys.readouterr().err
+
+
+def test_a_process_without_stderr_still_works(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("sys.stderr", None)
+    assert main(["analyse", "never-made.csv"]) == 2

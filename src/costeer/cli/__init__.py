@@ -7,8 +7,10 @@ what they need. Errors leave as one line on stderr: cli/errors.py.
 
 from __future__ import annotations
 
+import os
 import sys
 from importlib import import_module
+from pathlib import Path
 from typing import Annotated
 
 import typer
@@ -72,9 +74,17 @@ def main(arguments: list[str] | None = None) -> int:
         arguments: Words after `costeer`; those of the process if None.
     """
     words = sys.argv[1:] if arguments is None else arguments
+    _open_closed_streams()
     command = typer.main.get_command(app)
     return exit_code_of(
         lambda: command.main(
             words or ["--help"], prog_name="costeer", standalone_mode=False
         )
     )
+
+
+def _open_closed_streams() -> None:
+    """Give a process that was started without stdout or stderr a place to write."""
+    for name in ("stdout", "stderr"):
+        if getattr(sys, name) is None:
+            setattr(sys, name, Path(os.devnull).open("w"))  # open to the end

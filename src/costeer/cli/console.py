@@ -6,6 +6,7 @@ import sys
 import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
+from typing import Literal
 
 Advance = Callable[[int], None]
 """Tells the progress display that so many more pieces are done."""
@@ -56,9 +57,11 @@ def _bar(description: str, total: int, done: int) -> Iterator[Advance]:
 
 @contextmanager
 def _lines(description: str, total: int, done: int) -> Iterator[Advance]:
-    """A line for each tenth that is done, for a log file."""
+    """A line at the start and for each tenth that is done, for a log file."""
     start = time.monotonic()
     finished, printed = done, _tenths(done, total)
+    if finished < total:
+        note(f"{description}: {finished} of {total}")
 
     def advance(pieces: int) -> None:
         nonlocal finished, printed
@@ -66,11 +69,7 @@ def _lines(description: str, total: int, done: int) -> Iterator[Advance]:
         if _tenths(finished, total) > printed:
             printed = _tenths(finished, total)
             elapsed = time.monotonic() - start
-            print(
-                f"{description}: {finished} of {total}, {elapsed:.0f} s",
-                file=sys.stderr,
-                flush=True,
-            )
+            note(f"{description}: {finished} of {total}, {elapsed:.0f} s")
 
     yield advance
 
@@ -101,7 +100,8 @@ def print_table(
     for index, heading in enumerate(headings):
         cells = [row[index] for row in rows]
         numeric = all(map(_is_number, cells))
-        table.add_column(Text(heading), justify="right" if numeric else "left")
+        side: Literal["left", "right"] = "right" if numeric else "left"
+        table.add_column(Text(heading), justify=side, overflow="fold")
     for row in rows:
         table.add_row(*map(Text, row))
     console = Console()

@@ -7,6 +7,7 @@ import os
 import sys
 import traceback
 from collections.abc import Callable
+from typing import Any
 
 import typer
 
@@ -35,7 +36,7 @@ def exit_code_of(run: Callable[[], object]) -> int:
     except (KeyboardInterrupt, typer.Abort):
         return _stopped()
     except typer.TyperException as error:
-        return _refused(error, error.format_message())
+        return _refused(error, _usage(error))
     except ModuleNotFoundError as error:
         if error.name not in _EXTRAS:
             raise
@@ -60,8 +61,33 @@ def _refused(error: Exception, message: str) -> int:
     if os.environ.get("COSTEER_TRACEBACK"):
         traceback.print_exception(error)
     text = " ".join(message.split()) or type(error).__name__
-    print(f"costeer: {text}", file=sys.stderr)
+    shown = "".join(letter if letter.isprintable() else "?" for letter in text)
+    print(f"costeer: {shown}", file=sys.stderr)
     return BAD_INPUT
+
+
+def _usage(error: typer.TyperException) -> str:
+    """Name the word that was refused, and where the options are listed."""
+    # Any: the parser of values is Typer's own affair.
+    found: list[Any] = getattr(error.__cause__, "errors", list)()
+    kind, value = (found[0]["type"], found[0]["input"]) if found else ("", "")
+    if kind in _WANTED:
+        option, _, _ = error.format_message().rpartition(": ")
+        message = f"{option}: {value!r} is not {_WANTED[kind]}"
+    else:
+        message = error.format_message().rstrip(".")
+    context = getattr(error, "ctx", None)
+    if context is None or message.endswith("?"):
+        return message
+    return f"{message}; see {context.command_path} --help"
+
+
+_WANTED = {
+    "int_parsing": "a whole number",
+    "int_parsing_size": "a whole number of a sensible size",
+    "float_parsing": "a number, as 12.5",
+}
+"""What Typer's value parser expected, by the name of its error."""
 
 
 def _missing_module(name: str) -> str:
@@ -92,9 +118,10 @@ _NUMBERS: dict[type[OSError], int] = {
 _REMEDIES = {
     errno.ENOSPC: "; free some space and run the same command again",
     errno.EDQUOT: "; free some space and run the same command again",
-    errno.EACCES: "; choose a place that you may write to, or change its permissions",
-    errno.EPERM: "; choose a place that you may write to, or change its permissions",
+    errno.EACCES: "; choose a place that is yours, or change its permissions",
+    errno.EPERM: "; choose a place that is yours, or change its permissions",
     errno.EROFS: "; choose a place that you may write to",
+    errno.EEXIST: "; something of this name is in the way: move it",
     errno.ENOENT: "; check the path",
     errno.EISDIR: "; give a file, not a folder",
     errno.ENOTDIR: "; give a folder, not a file",
