@@ -122,3 +122,37 @@ def test_lane_changes_are_listed(capsys: pytest.CaptureFixture[str]) -> None:
 def test_what_is_undefined_is_a_dash() -> None:
     assert number(float("nan"), 2) == number(None, 2) == "-"
     assert number(1.234, 2) == "1.23"
+
+
+def test_a_device_is_refused_without_being_read(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    out = tmp_path / "endless.parquet"
+    out.symlink_to("/dev/zero")  # reading it would fill the memory
+    assert simulate(out) == 2
+    assert "exists and is not a simulated trial" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("name", ["trial.csv", "trial", "trial.parquet.gz"])
+def test_a_name_that_is_not_of_parquet_is_refused(
+    name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert simulate(tmp_path / name) == 2
+    assert "give a name that ends in .parquet" in capsys.readouterr().err
+    assert not any(tmp_path.iterdir())
+
+
+def test_a_lane_change_after_the_end_is_told(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    out = tmp_path / "t.parquet"
+    assert simulate(out, "--trigger-at", "3", "--trigger-at", "900") == 0
+    told = capsys.readouterr().err
+    assert "--trigger-at 900 had no effect: the trial ended after 10." in told
+
+
+def test_a_count_out_of_range_has_no_unit(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert simulate(tmp_path / "t.parquet", "--participant", "-3") == 2
+    assert capsys.readouterr().err.endswith("give a number from 0 to 10000000\n")

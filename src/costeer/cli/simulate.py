@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from costeer.cli.console import note
 from costeer.cli.trial_summary import print_summary
 from costeer.cli.units import parse_speed
 
@@ -42,11 +44,13 @@ def simulate(
         list[float] | None,
         typer.Option(
             metavar="S",
-            help="Make the system start a lane change then; may be repeated.",
+            help="Make the system start a lane change then, unless one is under way; "
+            "may be repeated.",
         ),
     ] = None,
     events: Annotated[
-        bool, typer.Option("--events/--no-events", help="Leaders to overtake.")
+        bool,
+        typer.Option("--events/--no-events", help="Leaders to overtake."),
     ] = True,
     initial_offset: Annotated[
         float, typer.Option(metavar="M", help="From the lane's centre at the start.")
@@ -106,11 +110,36 @@ def simulate_to_file(out: Path, setup: TrialSetup, engine: str = "numba") -> Non
             f"{setup.method}; choose an assisted condition for --trigger-at"
         )
     refuse_to_replace(out)
+    refuse_other_names(out)
     out.parent.mkdir(parents=True, exist_ok=True)
     record = simulate_trial(setup, engine)
     write_record(out, record)
     print_summary(record)
+    _tell_late_triggers(setup, float(record.columns["time"][-1]))
     typer.echo(out)
+
+
+def _tell_late_triggers(setup: TrialSetup, end: float) -> None:
+    """Say which lane changes were to start after the end of the trial [s]."""
+    late = [time for time in setup.trigger_times if time > end]
+    if late:
+        note(
+            f"costeer: --trigger-at {', '.join(f'{time:g}' for time in late)} had no "
+            f"effect: the trial ended after {end:.1f} s; make --length longer"
+        )
+
+
+def refuse_other_names(out: Path) -> None:
+    """Refuse a name by which nobody would take the file for Parquet.
+
+    Raises:
+        ValueError: If the name does not end in `.parquet`.
+    """
+    if out.suffix != ".parquet":
+        raise ValueError(
+            f"--out is {str(out)!r}; a record is a Parquet file: give a name that ends "
+            "in .parquet"
+        )
 
 
 def refuse_to_replace(out: Path) -> None:
@@ -124,10 +153,10 @@ def refuse_to_replace(out: Path) -> None:
 
     if not out.exists():
         return
-    try:
-        driver = str(read_record(out, columns=["time"]).metadata.get("driver"))
-    except (ValueError, IsADirectoryError):
-        driver = ""
+    driver = ""
+    if out.is_file():  # reading a device may never end
+        with suppress(ValueError):
+            driver = str(read_record(out, columns=["time"]).metadata.get("driver"))
     if not driver.startswith(DRIVERS):
         raise ValueError(
             f"{out} exists and is not a simulated trial; choose another --out"

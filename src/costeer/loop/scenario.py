@@ -130,7 +130,7 @@ def check_setup(setup: TrialSetup) -> None:
         if not allowed.low <= value <= allowed.high:
             raise ValueError(
                 f"{name} is {value}; give a number from {allowed.low} to "
-                f"{allowed.high} {allowed.unit}"
+                f"{allowed.high} {allowed.unit}".removesuffix(" -")
             )
     _check_choice("car", setup.car, tuple(CARS))
     _check_choice("driver", setup.driver, DRIVERS)
