@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -84,6 +85,33 @@ def test_damage_is_found(tmp_path: Path) -> None:
         file.write_bytes(damaged)
         with pytest.raises(ValueError, match=r"not a file of intention weights"):
             load_weights(file)
+
+
+def test_another_numpy_file_is_refused(tmp_path: Path) -> None:
+    file = tmp_path / "array.npy"
+    np.save(file, np.zeros(3))
+    with pytest.raises(ValueError, match=r"not a file of intention weights"):
+        load_weights(file)
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "said"),
+    [
+        ("output_bias", np.array(["x"]), "output_bias of .* holds <U1, expected float"),
+        ("output_bias", np.array([1j]), "holds complex128, expected floats"),
+        ("header", np.frombuffer(b"[1]", np.uint8), "not a file of intention weights"),
+    ],
+)
+def test_an_array_that_holds_no_floats_is_refused(
+    name: str, value: Any, said: str, tmp_path: Path
+) -> None:
+    file = tmp_path / "weights.npz"
+    save_weights(file, network())
+    with np.load(file) as archive:
+        arrays: dict[str, Any] = {key: archive[key] for key in archive.files}
+    np.savez(file, **(arrays | {name: value}))
+    with pytest.raises(ValueError, match=said):
+        load_weights(file)
 
 
 def test_weights_changed_in_the_file_are_found(tmp_path: Path) -> None:

@@ -135,12 +135,14 @@ def _unpacked(content: bytes, source: str) -> tuple[dict[str, Any], dict[str, An
     try:
         with np.load(io.BytesIO(content), allow_pickle=False) as archive:
             arrays = {name: archive[name] for name in archive.files}
-        return json.loads(arrays.pop("header").tobytes()), arrays
+        header = dict(json.loads(arrays.pop("header").tobytes()))
+        return header, arrays
     except (
         ValueError,
         KeyError,
         EOFError,
         AttributeError,
+        TypeError,
         zipfile.BadZipFile,
     ) as error:
         raise ValueError(
@@ -167,6 +169,10 @@ def _check(weights: NetworkWeights, source: str) -> None:
             raise ValueError(
                 f"{name} of {source} has the shape {values.shape}, expected "
                 f"{wanted[name]} for hidden size {hidden}"
+            )
+        if values.dtype.kind != "f":
+            raise ValueError(
+                f"{name} of {source} holds {values.dtype}, expected floats"
             )
         if not np.isfinite(values).all():
             raise ValueError(f"{name} of {source} holds values that are not finite")
