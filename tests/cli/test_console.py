@@ -9,12 +9,8 @@ import pytest
 from costeer.cli import console
 
 
-def test_a_log_gets_a_line_at_the_start_and_for_each_tenth(
-    capsys: pytest.CaptureFixture[str],
-) -> None:
+def test_a_log_gets_a_line_for_each_tenth(capsys: pytest.CaptureFixture[str]) -> None:
     with console.progress("Trials", 84) as advance:
-        # Said before the first piece is done: the first trial may compile for long.
-        assert capsys.readouterr().err == "Trials: 0 of 84\n"
         for _ in range(84):
             advance(1)
     shown = capsys.readouterr()
@@ -28,9 +24,7 @@ def test_resumed_work_starts_where_it_stopped(
 ) -> None:
     with console.progress("Trials", 10, done=8) as advance:
         advance(1)
-    first, second = capsys.readouterr().err.splitlines()
-    assert first == "Trials: 8 of 10"
-    assert second.startswith("Trials: 9 of 10, ")
+    assert capsys.readouterr().err.startswith("Trials: 9 of 10, ")
 
 
 def test_nothing_to_do_prints_nothing(capsys: pytest.CaptureFixture[str]) -> None:

@@ -65,6 +65,33 @@ def test_a_table_is_judged_in_words_and_in_json(
     assert found["samples"]["accuracy_of_never"] < 1.0
 
 
+def test_one_driver_gives_counts_and_no_interval(
+    weights: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    source = table(tmp_path / "d.csv", num_drivers=1)
+    assert main(["evaluate", str(source), "--weights", str(weights)]) == 0
+    shown = capsys.readouterr().out
+    assert "1 driver, " in shown
+    assert (
+        " to " not in shown.split("accuracy of the answer", 1)[1].split("early", 1)[0]
+    )
+    (false,) = [line for line in shown.splitlines() if "│ false triggers   " in line]
+    assert false.split("│")[2].strip().isdigit()
+
+
+def test_degrees_are_pointed_out(
+    weights: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    source = table(tmp_path / "d.csv")
+    wrong = pd.read_csv(source)
+    wrong["longitudinal_velocity"] *= 3.6 * 3.0
+    wrong.to_csv(source, index=False)
+    assert main(["evaluate", str(source), "--weights", str(weights)]) == 0
+    notes = capsys.readouterr().err.splitlines()
+    assert len(notes) == 3  # one for each stretch
+    assert "longitudinal_velocity looks like km/h, expected m/s" in notes[0]
+
+
 def refusal(capsys: pytest.CaptureFixture[str]) -> str:
     """The one line on stderr."""
     (line,) = capsys.readouterr().err.strip().splitlines()

@@ -322,3 +322,18 @@ def test_a_damaged_gzip_is_refused(tmp_path: Path) -> None:
     (tmp_path / "t.csv.gz").write_bytes(b"\x1f\x8b\x08\x00 no more")
     with pytest.raises(ValueError, match="is no CSV table"):
         read_recording(tmp_path / "t.csv.gz")
+
+
+@pytest.mark.parametrize("names", ["time,yaw_angle,yaw_angle", "0.1,0.2,0.2"])
+def test_a_name_that_stands_twice_is_refused(names: str, tmp_path: Path) -> None:
+    path = tmp_path / "twice.csv"
+    path.write_text(f"{names}\n0.0,1.0,2.0\n")
+    with pytest.raises(ValueError, match=r"twice\.csv: 2 columns have the name"):
+        read_recording(path)
+
+
+def test_a_table_between_semicolons_is_refused_with_the_way_out(tmp_path: Path) -> None:
+    path = tmp_path / "a.csv"
+    path.write_text("time;yaw_angle\n0,0;1,5\n")
+    with pytest.raises(ValueError, match="commas between columns, decimal points"):
+        read_recording(path)

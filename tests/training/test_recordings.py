@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from typing import Any
 
@@ -110,3 +111,32 @@ def test_a_record_knows_its_driver() -> None:
 def test_without_sequence_and_participant_the_file_is_the_driver() -> None:
     (made,) = recordings_of(TrialRecord(metadata={}, columns=columns(1)), "drive.csv")
     assert made.driver == "drive.csv"
+
+
+@pytest.mark.parametrize(
+    ("column", "value", "said"),
+    [
+        ("lane", 2, "a: lane is 2 in row 7; give 0 (right) or 1 (left)"),
+        ("lane", 0.5, "a: lane is 0.5 in row 7; give 0 (right) or 1 (left)"),
+        ("crossing", 3, "a: crossing is 3 in row 7; give -1 (right), 0 or +1 (left)"),
+        ("crossing", np.nan, "a: crossing is nan in row 7; give -1 (right), 0 or"),
+        ("head_yaw", "abc", "a: column 'head_yaw' is 'abc' in row 7, expected a"),
+        ("time", "0:07", "a: column 'time' is '0:07' in row 7, expected a number"),
+    ],
+)
+def test_a_value_that_cannot_be_is_named_with_its_row(
+    column: str, value: Any, said: str
+) -> None:
+    drive = changed(crossing=np.zeros(len(columns(1)["time"])))
+    values = np.array(drive[column], object)
+    values[7] = value
+    drive[column] = values.astype(str if isinstance(value, str) else float)
+    with pytest.raises(ValueError, match=f"^{re.escape(said)}"):
+        recording("a", "a", drive)
+
+
+def test_degrees_are_noticed() -> None:
+    degrees = np.degrees(np.asarray(columns(1)["yaw_angle"])) + 5.0
+    (told,) = recording("a", "a", changed(yaw_angle=degrees)).notes
+    assert told.startswith("a: yaw_angle looks like degrees, expected rad; if so, mul")
+    assert recording("a", "a", columns(1)).notes == ()

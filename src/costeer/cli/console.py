@@ -57,11 +57,9 @@ def _bar(description: str, total: int, done: int) -> Iterator[Advance]:
 
 @contextmanager
 def _lines(description: str, total: int, done: int) -> Iterator[Advance]:
-    """A line at the start and for each tenth that is done, for a log file."""
+    """A line for each tenth that is done, for a log file."""
     start = time.monotonic()
     finished, printed = done, _tenths(done, total)
-    if finished < total:
-        note(f"{description}: {finished} of {total}")
 
     def advance(pieces: int) -> None:
         nonlocal finished, printed

@@ -7,6 +7,7 @@ from typing import Annotated, Any
 
 import typer
 
+from costeer.cli.console import note
 from costeer.cli.validate import fraction, positive
 
 _SAMPLES = (
@@ -23,6 +24,13 @@ _SAMPLES = (
     ("log_loss", "log loss [nat]"),
     ("calibration_error", "calibration error"),
 )
+_COUNTS = {
+    "num_crossings",
+    "true_triggers",
+    "early_triggers",
+    "false_triggers",
+    "missed",
+}
 _TRIGGERS = (
     ("num_crossings", "crossings the drivers meant"),
     ("true_triggers", "true triggers"),
@@ -77,7 +85,10 @@ def evaluate(
         triggers=DEFAULTS.triggers._replace(threshold=threshold),
         false_per_km=false_per_km,
     )
-    result = judge(network.weights, read_recordings(files), parameters)
+    recordings = read_recordings(files)
+    for line in dict.fromkeys(line for each in recordings for line in each.notes):
+        note(f"note on {line}")
+    result = judge(network.weights, recordings, parameters)
     result = {"intention_model_hash": network.hash, **result}
     if json:
         import json as encoder
@@ -91,13 +102,14 @@ def print_evaluation(result: dict[str, Any], title: str) -> None:
     """Print what `training.evaluate` found as a table."""
     from costeer.cli.console import print_table
 
+    num = result["num_drivers"]
     heading = (
-        f"{title}: {result['num_drivers']} drivers, {result['hours']:.2f} h, "
+        f"{title}: {num} driver{'s' * (num != 1)}, {result['hours']:.2f} h, "
         f"{result['kilometres']:.1f} km, threshold {result['threshold']:g}"
     )
-    intervals = result["interval_95"]
+    intervals = result["interval_95"] if num > 1 else {}
     rows = [
-        [label, _number(result[part].get(name)), _interval(intervals.get(name))]
+        [label, _shown(name, result[part].get(name)), _interval(intervals.get(name))]
         for part, lines in (("samples", _SAMPLES), ("triggers", _TRIGGERS))
         for name, label in lines
     ]
@@ -107,8 +119,14 @@ def print_evaluation(result: dict[str, Any], title: str) -> None:
         typer.echo(
             f"At threshold {fixed['threshold']:.3f}: {fixed['false_per_km']:.3f} false "
             f"triggers per km, median lead {_number(fixed['lead_time_median'])} s, "
-            f"missed {_number(fixed['missed'])}."
+            f"missed {fixed['missed']:.0f}."
         )
+
+
+def _shown(name: str, value: float | None) -> str:
+    if name in _COUNTS and value is not None:
+        return f"{value:.0f}"
+    return _number(value)
 
 
 def _number(value: float | None) -> str:

@@ -217,7 +217,16 @@ def plain_columns(table: pa.Table) -> dict[str, NDArray[Any]]:
 
     Numbers with gaps become floats with NaN, flags with gaps masked arrays. Columns
     of another type, times of day for example, are left out.
+
+    Raises:
+        ValueError: If a name stands twice.
     """
+    for name in table.column_names:
+        if table.column_names.count(name) > 1:
+            raise ValueError(
+                f"{table.column_names.count(name)} columns have the name {name!r}; the "
+                "first row names the columns, each differently"
+            )
     arrays = {name: _plain_column(table.column(name)) for name in table.column_names}
     return {name: array for name, array in arrays.items() if array is not None}
 

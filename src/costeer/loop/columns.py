@@ -163,6 +163,8 @@ def converted(column: Column, values: NDArray[Any]) -> NDArray[Any]:
             f"column {column.name!r} has {values.ndim} dimensions; give one value "
             "per row"
         )
+    if values.dtype.kind == "U" and column.kind != "string":
+        raise ValueError(text_told(column.name, values))
     if values.dtype.kind not in _ACCEPTED_KINDS[column.kind]:
         raise ValueError(
             f"column {column.name!r} holds {values.dtype}, expected {column.kind}; "
@@ -170,6 +172,23 @@ def converted(column: Column, values: NDArray[Any]) -> NDArray[Any]:
         )
     _check_range(column, values)
     return _masked_or_plain(column, values)
+
+
+def text_told(name: str, values: NDArray[np.str_]) -> str:
+    """Say which cell of a column of numbers holds text."""
+    row = next((i for i, text in enumerate(values) if not _is_number(text)), 0)
+    return (
+        f"column {name!r} is {str(values[row])!r} in row {row}, expected a number with "
+        "a decimal point; mend that cell, or leave it empty if nothing is known"
+    )
+
+
+def _is_number(text: str) -> bool:
+    try:
+        float(text)
+    except ValueError:
+        return False
+    return True
 
 
 def _check_range(column: Column, values: NDArray[Any]) -> None:

@@ -112,12 +112,18 @@ def read_recording(path: str | os.PathLike[str]) -> TrialRecord:
         OSError: If it cannot be read.
     """
     if str(path).endswith((".csv", ".csv.gz")):
-        return TrialRecord(metadata={}, columns=plain_columns(_csv_table(Path(path))))
+        return _plain_recording(_csv_table(Path(path)), path)
     file = _opened(Path(path))
     if METADATA_KEY in (file.schema_arrow.metadata or {}):
         return _record_in(file, path, list(COLUMN_NAMES))
-    table = _rows(file, path, file.schema_arrow.names)
-    return TrialRecord(metadata={}, columns=plain_columns(table))
+    return _plain_recording(_rows(file, path, file.schema_arrow.names), path)
+
+
+def _plain_recording(table: pa.Table, path: str | os.PathLike[str]) -> TrialRecord:
+    try:
+        return TrialRecord(metadata={}, columns=plain_columns(table))
+    except ValueError as error:
+        raise ValueError(f"{path}: {error}") from error
 
 
 def _wanted_columns(columns: Sequence[str] | None) -> list[str]:
@@ -167,7 +173,10 @@ def _csv_table(path: Path) -> pa.Table:
     try:
         return pyarrow.csv.read_csv(path)
     except (pa.ArrowException, OSError) as error:
-        raise ValueError(f"{path} is no CSV table: {_first_line(error)}") from error
+        raise ValueError(
+            f"{path} is no CSV table: {_first_line(error)}; give UTF-8 with commas "
+            "between columns, decimal points, and names in the first row"
+        ) from error
 
 
 def _first_line(error: BaseException) -> str:

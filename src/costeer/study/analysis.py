@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from costeer.loop.columns import TrialRecord
+from costeer.loop.plausible import suspicions
 from costeer.loop.record import read_recording
 from costeer.study.definitions import DEFAULTS, Columns, Measure, MeasureParameters
 from costeer.study.measures import Row, lane_change_rows, parameters_of
@@ -16,7 +17,6 @@ from costeer.study.recordings import (
     Adaptation,
     Stretch,
     stretches,
-    suspicions,
 )
 from costeer.study.sampling import EVEN_ENOUGH, Sampling, evened, sampling
 from costeer.study.trial_measures import prepare, trial_measures
@@ -112,7 +112,10 @@ def _notes(
     measures: dict[str, Measure],
     ignored: Iterable[str],
 ) -> list[str]:
-    notes = suspicions(columns)
+    notes = [
+        f"{each.words}; if so, add --scale {each.column}={each.factor:.6g}"
+        for each in suspicions(columns)
+    ]
     if found.unevenness > EVEN_ENOUGH:
         notes.append(
             f"unevenly sampled, steps up to {found.longest_step:.3g} s: interpolated "

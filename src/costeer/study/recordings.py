@@ -4,26 +4,13 @@ A recording needs `time` in seconds and any of a trial record's columns in SI un
 """
 
 from collections.abc import Mapping
-from math import radians
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from costeer.loop.columns import COLUMNS_BY_NAME, converted
-from costeer.study.definitions import Columns, Signal, missing
-
-# Largest plausible absolute values in SI units, and what a larger one looks like.
-_PLAUSIBLE = {
-    "steering_wheel_angle": (15.0, "rad", "degrees", radians(1.0)),
-    "yaw_angle": (np.pi, "rad", "degrees", radians(1.0)),
-    "longitudinal_velocity": (70.0, "m/s", "km/h", 1.0 / 3.6),
-    "driver_torque": (40.0, "N·m", "hundredths of N·m", 0.01),
-    "head_yaw": (1.5, "-", "degrees instead of [-1, 1]", 1.0 / 90.0),
-    "lateral_position": (30.0, "m", "centimetres", 0.01),
-}
-_LARGEST_LATERAL_ACCELERATION = 12.0  # [m/s²], more than tyres give
-_STEERING_RATIO_TIMES_WHEELBASE = 16.0 * 2.7  # [m], a passenger car
+from costeer.study.definitions import Columns
 
 
 class Adaptation(NamedTuple):
@@ -140,7 +127,10 @@ def _no_time(columns: Columns) -> str:
 
 
 def _as_kind(name: str, values: NDArray[Any]) -> NDArray[Any]:
-    """A column in the type of its kind; whole numbers do for flags and floats."""
+    """A column in the type of its kind; whole numbers do for flags and floats.
+
+    Infinity is no value of anything that is measured: such a sample is undefined.
+    """
     column = COLUMNS_BY_NAME[name]
     if column.kind == "float64" and values.dtype.kind in "iu":
         values = values.astype(np.float64)
@@ -148,6 +138,8 @@ def _as_kind(name: str, values: NDArray[Any]) -> NDArray[Any]:
         values = _whole(name, values, np.bool_ if column.kind == "bool" else np.int8)
     if column.kind == "bool" and not column.nullable:
         values = np.ma.filled(values, False)
+    if values.dtype.kind == "f" and name != "time":
+        values = np.where(np.isinf(values), np.nan, values)
     return converted(column, values)
 
 
@@ -162,35 +154,3 @@ def _whole(name: str, values: NDArray[Any], dtype: type[np.generic]) -> NDArray[
             f"{'0 or 1' if dtype is np.bool_ else 'a whole number from -128 to 127'}"
         )
     return np.ma.MaskedArray(whole, mask=undefined) if undefined.any() else whole
-
-
-def suspicions(columns: Columns) -> list[str]:
-    """Columns whose values do not look like SI units, and what to do about it."""
-    found = [
-        _suspicion(name, unit, other, factor)
-        for name, (largest, unit, other, factor) in _PLAUSIBLE.items()
-        if name in columns and _largest(columns[name]) > largest
-    ]
-    known = ("steering_wheel_angle", "longitudinal_velocity")
-    if not found and not missing(columns, *known) and _steers_too_hard(columns):
-        found.append(_suspicion(known[0], "rad", "degrees", radians(1.0)))
-    return found
-
-
-def _suspicion(name: str, unit: str, other: str, factor: float) -> str:
-    return (
-        f"{name} looks like {other}, expected {unit}; if so, add "
-        f"--scale {name}={factor:.6g}"
-    )
-
-
-def _largest(values: Signal) -> float:
-    finite = np.abs(values[np.isfinite(values)])
-    return float(finite.max()) if finite.size else 0.0
-
-
-def _steers_too_hard(columns: Columns) -> bool:
-    """Whether the angle, in radians, would need more grip than tyres have."""
-    angle, speed = columns["steering_wheel_angle"], columns["longitudinal_velocity"]
-    acceleration = angle * speed**2 / _STEERING_RATIO_TIMES_WHEELBASE
-    return _largest(acceleration) > _LARGEST_LATERAL_ACCELERATION

@@ -20,6 +20,8 @@ from costeer.intention.features import (
     adjacent_side,
     feature_series,
 )
+from costeer.loop.columns import text_told
+from costeer.loop.plausible import suspicions
 from costeer.loop.record import TrialRecord, read_recording
 from costeer.training.labels import Labels, crossings, labels
 
@@ -40,6 +42,7 @@ class Recording(NamedTuple):
         intended: Crossings that the driver meant, -1 or +1 at the first sample in the
             new lane, else 0, `(time,)`.
         labels: Truth at each sample.
+        notes: What the reader should know before trusting a judgement.
     """
 
     driver: str
@@ -48,20 +51,23 @@ class Recording(NamedTuple):
     side: NDArray[np.int8]
     intended: NDArray[np.int8]
     labels: Labels
+    notes: tuple[str, ...] = ()
 
 
 def recording(driver: str, name: str, columns: Columns) -> Recording:
     """One stretch from its columns.
 
     Raises:
-        ValueError: If a column is missing, a lane is unknown or the rate is not 60 Hz.
+        ValueError: If a column is missing or holds what it cannot, or the rate is not
+            60 Hz.
     """
     _check(name, columns)
-    side = adjacent_side(np.ma.getdata(columns["lane"]))
+    lane = _whole(name, columns, "lane", (0, 1), "0 (right) or 1 (left)")
+    side = adjacent_side(lane)
     crossing = (
-        np.sign(np.ma.getdata(columns["crossing"])).astype(np.int8)
+        _whole(name, columns, "crossing", (-1, 0, 1), "-1 (right), 0 or +1 (left)")
         if "crossing" in columns
-        else crossings(np.ma.getdata(columns["lane"]))
+        else crossings(lane)
     )
     return Recording(
         driver=driver,
@@ -70,7 +76,24 @@ def recording(driver: str, name: str, columns: Columns) -> Recording:
         side=side,
         intended=_intended(crossing, columns),
         labels=labels(crossing, side),
+        notes=tuple(
+            f"{name}: {each.words}; if so, multiply it by {each.factor:.6g}"
+            for each in suspicions(columns)
+        ),
     )
+
+
+def _whole(
+    name: str, columns: Columns, column: str, allowed: tuple[int, ...], words: str
+) -> NDArray[np.int8]:
+    """A column of few values, each of them allowed."""
+    values = np.ma.filled(columns[column].astype(np.float64), np.nan)
+    wrong = np.flatnonzero(~np.isin(values, allowed))
+    if wrong.size:
+        raise ValueError(
+            f"{name}: {column} is {values[wrong[0]]:g} in row {wrong[0]}; give {words}"
+        )
+    return values.astype(np.int8)
 
 
 def _tracked(columns: Columns) -> dict[str, NDArray[np.float64]]:
@@ -107,6 +130,8 @@ def _check(name: str, columns: Columns) -> None:
             f"{name} has no column {names}; names are those of the trial record."
             + variant
         )
+    for column in (*_NEEDED, *({"crossing"} & columns.keys())):
+        _check_numbers(name, column, columns[column])
     steps = np.diff(np.asarray(columns["time"], np.float64))
     wrong = np.flatnonzero(~(np.abs(steps * SAMPLE_RATE - 1.0) < _RATE_TOLERANCE))
     if wrong.size:
@@ -115,6 +140,11 @@ def _check(name: str, columns: Columns) -> None:
             f"{wrong[0] + 1}; the network needs {SAMPLE_RATE:g} rows a second without "
             "gaps: resample, and mark separate stretches in the column 'sequence'"
         )
+
+
+def _check_numbers(name: str, column: str, values: NDArray[Any]) -> None:
+    if values.dtype.kind == "U":
+        raise ValueError(f"{name}: {text_told(column, values)}")
 
 
 def recordings_of(record: TrialRecord, name: str) -> list[Recording]:
