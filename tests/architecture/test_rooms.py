@@ -17,7 +17,7 @@ CLOCKS = {"time", "datetime", "random", "secrets"}
 SIMULATING = {"configuration", "run", "jobs", "trials"}
 """Modules of the experiment that set up and run trials; others read records only."""
 
-RECORDS = {"record", "columns", "arrow"}
+RECORDS = {"record", "columns", "arrow", "plausible"}
 """Modules of the loop that hold the record."""
 
 
