@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import errno
 import os
+import subprocess
+import sys
 from collections.abc import Callable
 
 import pytest
@@ -153,3 +155,16 @@ def test_a_repeated_option_names_the_word_that_is_wrong(
 def test_a_process_without_stderr_still_works(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("sys.stderr", None)
     assert main(["analyse", "never-made.csv"]) == 2
+
+
+def test_a_home_that_cannot_be_written_is_no_news() -> None:
+    words = "from costeer.cli import main; main(['--version']); import matplotlib"
+    without = {k: v for k, v in os.environ.items() if k != "MPLCONFIGDIR"}
+    told = subprocess.run(
+        [sys.executable, "-c", words],
+        env=without | {"HOME": os.devnull, "XDG_CONFIG_HOME": "", "XDG_CACHE_HOME": ""},
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    assert told.stderr == ""

@@ -50,10 +50,14 @@ def test_records_alone_bring_back_every_byte(
     assert "report: " in shown.err
 
 
-def test_a_half_written_record_is_not_believed(bare: Path) -> None:
+def test_a_half_written_record_is_not_believed(
+    bare: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     record = bare / "records" / "01-manual.parquet"
     record.write_bytes(record.read_bytes()[:1000])
     assert main(["report", str(bare)]) == 0
+    told = capsys.readouterr().err
+    assert "without records/01-manual.parquet (damaged or of another study);" in told
     page = (bare / "report.html").read_text("utf-8")
     assert "not complete: 1 of 2 trials are there" in page
 
@@ -91,3 +95,18 @@ def test_a_study_that_is_running_is_left_alone(
     with locked(bare):
         assert main(["report", str(bare)]) == 2
     assert "in use by another costeer" in capsys.readouterr().err
+
+
+def test_a_missing_record_is_named(
+    bare: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (bare / "records" / "01-weak-gentle.parquet").unlink()
+    assert main(["report", str(bare)]) == 0
+    assert "01-weak-gentle.parquet (missing);" in capsys.readouterr().err
+
+
+def test_a_whole_study_lacks_nothing(
+    bare: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["report", str(bare)]) == 0
+    assert "without" not in capsys.readouterr().err

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import json
 from pathlib import Path
 from typing import Any
@@ -337,3 +338,18 @@ def test_a_table_between_semicolons_is_refused_with_the_way_out(tmp_path: Path) 
     path.write_text("time;yaw_angle\n0,0;1,5\n")
     with pytest.raises(ValueError, match="commas between columns, decimal points"):
         read_recording(path)
+
+
+def test_a_full_disk_names_the_file(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def full(*_: object, **__: object) -> None:
+        # As pyarrow says it: without a file name.
+        raise OSError(errno.ENOSPC, "Error writing bytes to file. Detail: [errno 28]")
+
+    monkeypatch.setattr(pq, "write_table", full)
+    path = tmp_path / "a.parquet"
+    with pytest.raises(OSError, match="No space left on device") as told:
+        write_record(path, synthetic_record(length=400.0))
+    assert told.value.filename == str(path)
+    assert not any(tmp_path.iterdir())

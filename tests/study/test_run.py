@@ -181,7 +181,7 @@ def test_a_full_disk_is_told_and_nothing_is_lost(
         with pytest.raises(
             OSError,
             match=r"participant 1, weak-gentle: No space left on device .*01-weak-g"
-            r".*; 2 of 6 trials are done and kept in .*; run the same command again",
+            r".*; free some space; 2 of 6 trials are done and kept in .*; run the same",
         ):
             run_small(tmp_path)
     assert run_small(tmp_path).num_resumed == 2

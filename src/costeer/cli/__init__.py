@@ -7,6 +7,7 @@ what they need. Errors leave as one line on stderr: cli/errors.py.
 
 from __future__ import annotations
 
+import logging
 import os
 import sys
 from importlib import import_module
@@ -75,6 +76,8 @@ def main(arguments: list[str] | None = None) -> int:
     """
     words = sys.argv[1:] if arguments is None else arguments
     _open_closed_streams()
+    # It warns at length where the home folder cannot be written, and works all the same.
+    logging.getLogger("matplotlib").setLevel(logging.ERROR)
     command = typer.main.get_command(app)
     return exit_code_of(
         lambda: command.main(

@@ -72,8 +72,10 @@ def _replace_with_table(path: Path, table: pa.Table) -> None:
             write_page_checksum=True,
         )
         partial.replace(path)
-    except BaseException:
+    except BaseException as error:
         partial.unlink(missing_ok=True)
+        if isinstance(error, OSError) and error.errno and not error.filename:
+            raise OSError(error.errno, os.strerror(error.errno), str(path)) from error
         raise
 
 

@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+import csv
 from collections.abc import Callable
 from pathlib import Path
 
 from costeer.loop.record import read_record
-from costeer.study.folder import locked, read_study
+from costeer.study.configuration import settings_of
+from costeer.study.folder import locked, read_study, record_path
 from costeer.study.material import HUMAN_DRIVER, find_records
 from costeer.study.report import write_report
 from costeer.study.run import remake_tables
+from costeer.study.trial_tables import TRIALS_FILE
+from costeer.study.trials import study_trials
 
 
 def remake_report(folder: Path, tell: Callable[[str], None]) -> Path:
@@ -45,3 +49,29 @@ def holds_human_trials(folder: Path) -> bool:
         except ValueError:
             continue  # cut short by a crash: the next one tells
     return False
+
+
+def trials_without_record(folder: Path) -> list[str]:
+    """Name the records of a study of virtual drivers that are missing or damaged.
+
+    Args:
+        folder: Of the study, after its report was made.
+
+    Returns:
+        Paths within the folder, each with what is wrong.
+
+    Raises:
+        ValueError: If it is no study.
+        OSError: If a file cannot be read.
+    """
+    if holds_human_trials(folder):
+        return []
+    with (folder / TRIALS_FILE).open(encoding="utf-8", newline="") as file:
+        there = {(row["participant"], row["condition"]) for row in csv.DictReader(file)}
+    missing = []
+    for trial in study_trials(settings_of(read_study(folder).configuration)):
+        if (str(trial.participant), trial.condition) not in there:
+            path = record_path(folder, trial.participant, trial.condition)
+            state = "damaged or of another study" if path.exists() else "missing"
+            missing.append(f"{path.relative_to(folder)} ({state})")
+    return missing

@@ -7,6 +7,7 @@ interrupted study goes on where it stopped. Nothing depends on which job runs wh
 
 from __future__ import annotations
 
+import errno
 import shlex
 from collections.abc import Callable, Sequence
 from functools import partial
@@ -137,7 +138,10 @@ def remake_tables(path: Path, jobs: int | None = None) -> int:
         found = _all_done(folder, work, jobs, ignore)
         done = [each for each in found if each is not None]
         if not done:
-            raise ValueError(f"no trial of the study in {path} has a complete record")
+            raise ValueError(
+                f"no trial of the study in {path} has a complete record; the first "
+                "lines of its study.yaml hold the command that makes them"
+            )
         _write_results(path, done, None)
     return len(done)
 
@@ -179,10 +183,14 @@ def _explained(
         return StudyInterrupted(kept)
     where = f"participant {failed.participant}, {failed.condition}: " if failed else ""
     if isinstance(cause, OSError):
-        return OSError(f"{where}{_reason(cause)}; {kept}")
+        space = "free some space; " if cause.errno in _FULL else ""
+        return OSError(f"{where}{_reason(cause)}; {space}{kept}")
     if isinstance(cause, ValueError):
         return ValueError(f"{where}{cause}; {kept}")
     return cause or AssertionError("jobs stopped without a cause")
+
+
+_FULL = (errno.ENOSPC, errno.EDQUOT)
 
 
 def _reason(error: OSError) -> str:
