@@ -76,7 +76,7 @@ def main(arguments: list[str] | None = None) -> int:
     """
     words = sys.argv[1:] if arguments is None else arguments
     _open_closed_streams()
-    # It warns at length where the home folder cannot be written, and works all the same.
+    # It warns at length where the home folder cannot be written, then works.
     logging.getLogger("matplotlib").setLevel(logging.ERROR)
     command = typer.main.get_command(app)
     return exit_code_of(
