@@ -107,3 +107,13 @@ def test_a_lost_sample_does_not_blind_the_verdict(lost: int) -> None:
     verdicts = judged([*[conflict] * 70, tuple(gap), conflict])
     assert not verdicts[-1].consistent
     assert math.isfinite(verdicts[-1].guidance_pseudo_work)
+
+
+@pytest.mark.parametrize("lost", [0, 1])
+@pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf])
+def test_without_a_torque_the_last_verdict_stays(lost: int, value: float) -> None:
+    conflict, agreement = (-1.0, 1.0, 5.0), (1.0, 1.0, 5.0)
+    for last, consistent in ((conflict, False), (agreement, True)):
+        gap = [value if k == lost else last[k] for k in range(3)]
+        verdicts = judged([*[conflict] * 70, last, tuple(gap), last])
+        assert [v.consistent for v in verdicts[-3:]] == [consistent] * 3

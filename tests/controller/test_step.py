@@ -201,11 +201,18 @@ def test_one_lost_value_leaves_no_trace_after_100_ms(name: str) -> None:
     assert gap[-1].target == whole[-1].target
 
 
-def test_values_that_stay_lost_end_the_torque_within_100_ms() -> None:
+@pytest.mark.parametrize("name", ["yaw_angle", "driver_torque"])
+@pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf])
+def test_values_that_stay_lost_end_the_torque_within_100_ms(
+    name: str, value: float
+) -> None:
     samples = [sample(k, lateral_position=-1.4) for k in range(60)]
     state, before = run(PARAMETERS, START, samples)
     assert before[-1].applied_torque > 2.0
-    lost = [sample(60 + k, yaw_angle=math.nan) for k in range(6)]
+    lost = [
+        sample(60 + k, lateral_position=-1.4)._replace(**{name: value})
+        for k in range(6)
+    ]
     _, signals = run(PARAMETERS, state, lost)
     assert signals[-1].applied_torque == 0.0
 

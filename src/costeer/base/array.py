@@ -54,23 +54,23 @@ def tanh(x: Real) -> Real:
 
 
 def sin(x: Real) -> Real:
-    """Sine of an angle in radians."""
+    """Sine of an angle in radians; NaN if it is not finite, in every engine."""
     if isinstance(x, (float, int)):
-        return math.sin(x)
+        return math.sin(x) if math.isfinite(x) else math.nan
     return cast("Real", _numpy_like(x).sin(x))
 
 
 def cos(x: Real) -> Real:
-    """Cosine of an angle in radians."""
+    """Cosine of an angle in radians; NaN if it is not finite, in every engine."""
     if isinstance(x, (float, int)):
-        return math.cos(x)
+        return math.cos(x) if math.isfinite(x) else math.nan
     return cast("Real", _numpy_like(x).cos(x))
 
 
 def tan(x: Real) -> Real:
-    """Tangent of an angle in radians."""
+    """Tangent of an angle in radians; NaN if it is not finite, in every engine."""
     if isinstance(x, (float, int)):
-        return math.tan(x)
+        return math.tan(x) if math.isfinite(x) else math.nan
     return cast("Real", _numpy_like(x).tan(x))
 
 

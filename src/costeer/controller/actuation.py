@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 from costeer.base import array as xp
 from costeer.base.array import Real, compiled
+from costeer.controller.signals import Guidance
 
 STRONG = 1.0
 """Strength factor of the strong condition, Table IV."""
@@ -62,6 +64,19 @@ def applied_torque(
     torque = parameters.strength_factor * haptic_gain * instructed_torque
     limit = parameters.torque_limit
     return xp.select(xp.isfinite(torque), xp.clip(torque, -limit, limit), 0.0)
+
+
+@compiled
+def felt_instruction(guidance: Guidance, driver_torque: Real) -> Real:
+    """The instruction while the driver can be felt, else NaN: no torque [N·m].
+
+    Without the driver's torque no conflict would be seen, and the gain would stay.
+
+    Args:
+        guidance: With tau_hapi.
+        driver_torque: tau_dr, not finite if its sensor is lost [N·m].
+    """
+    return xp.select(xp.isfinite(driver_torque), guidance.instructed_torque, math.nan)
 
 
 @compiled

@@ -104,6 +104,9 @@ def step(
 ) -> tuple[ConsistencyState, Consistency]:
     """Advance both windows by one sample and judge.
 
+    Without a finite torque of both there is no new verdict: the last one stays, so
+    that a lost sample does not start a fade anew.
+
     Args:
         parameters: δ and hold time.
         state: Windows and last verdict.
@@ -122,7 +125,8 @@ def step(
     agreement = torque_agreement(instructed_torque, driver_torque)
     literal = is_consistent(parameters, guidance_work, driver_work, agreement)
     held = state.time_in_verdict < parameters.hold_time
-    consistent = xp.select(held, state.consistent, literal)
+    unknown = xp.logical_not(xp.isfinite(agreement))
+    consistent = xp.select(held | unknown, state.consistent, literal)
     switched = consistent != state.consistent
     new_state = ConsistencyState(
         guidance_power=guidance_power,

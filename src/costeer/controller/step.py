@@ -185,8 +185,9 @@ def step(
         parameters.strength, state.strength, verdict.consistent, dt
     )
     replan = replanning.replan(parameters.replanning, gain, verdict.consistent)
+    felt = actuation.felt_instruction(torques, measurement.driver_torque)
     actuation_state, torque = actuation.step(
-        parameters.actuation, state.actuation, gain, torques.instructed_torque, dt
+        parameters.actuation, state.actuation, gain, felt, dt
     )
     new_state = ControllerState(
         inference=inference_state,
