@@ -125,14 +125,12 @@ class Action(NamedTuple):
         pedals: Accelerator and brake.
         head_yaw: In [-1, 1], left positive [-].
         intention: Side of the decided lane change, -1 right, 0 none, +1 left [-].
-        time_to_crossing: Until the planned path crosses the line [s].
     """
 
     arm: ArmCommand
     pedals: Pedals
     head_yaw: Real
     intention: Real
-    time_to_crossing: Real
 
 
 @compiled
@@ -337,5 +335,4 @@ def act(
         ),
         head_yaw=gaze.head_yaw(parameters.gaze, head),
         intention=direction,
-        time_to_crossing=decision.time_to_crossing(decided),
     )

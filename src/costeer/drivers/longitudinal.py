@@ -32,8 +32,10 @@ class LongitudinalParameters(NamedTuple):
         speed_time: Correlation time of the wander [s]. Source: assumed.
         overtaking_speed: Faster than preferred while overtaking [m/s]. Source:
             assumed, spread over the population; some drivers do not.
-        acceleration: Comfortable [m/s²]. Source: Treiber et al. (2000), rounded.
-        deceleration: Comfortable [m/s²]. Source: Treiber et al. (2000), rounded.
+        acceleration: Comfortable [m/s²]. Source: assumed; Treiber et al. (2000) have
+            0.73.
+        deceleration: Comfortable [m/s²]. Source: assumed, near the 1.67 of Treiber et
+            al. (2000).
         headway: Time gap when following [s]. Source: assumed.
         overtaking_headway: Time gap accepted when about to overtake [s]. Source:
             assumed.

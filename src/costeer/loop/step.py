@@ -301,8 +301,6 @@ def step(
 
 
 @compiled
-def planned_to_cross(action_time_to_crossing: Real, horizon: Real) -> Flag:
+def planned_to_cross(time_to_crossing: Real, horizon: Real) -> Flag:
     """Whether the driver's own plan crosses the line within `horizon` [s]."""
-    return xp.logical_not(action_time_to_crossing > horizon) & (
-        action_time_to_crossing > 0.0
-    )
+    return (time_to_crossing > 0.0) & (time_to_crossing <= horizon)

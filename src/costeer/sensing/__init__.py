@@ -1,1 +1,1 @@
-"""What can be known of the world: the measurement, its sensors, a torque observer."""
+"""What can be known of the world: the measurement and its sensors."""

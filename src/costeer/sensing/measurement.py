@@ -22,8 +22,7 @@ class Measurement(NamedTuple):
         steering_wheel_angle: [rad].
         steering_wheel_rate: [rad/s].
         front_slip_angle: From the signals above and the car's geometry [rad].
-        driver_torque: Known, measured or estimated, Sec. 1.4 of the specification
-            [N·m].
+        driver_torque: At the wheel; known to the simulator, docs/paper.md [N·m].
         head_yaw: Normalised to [-1, 1], left positive [-].
         head_yaw_valid: Whether the tracker sees the head.
         lane: That the car is in, counted from the right [-].
