@@ -14,6 +14,7 @@ from costeer.study.figures.episodes import (
     LONGEST_TAIL,
     exemplary_inconsistency,
     falls,
+    inconsistent_spans,
     rises,
 )
 from costeer.study.figures.style import styled
@@ -77,6 +78,24 @@ def test_without_a_trigger_or_recovery_the_nearest_is_shown(
         caption = inconsistency.draw(episode).caption
     assert "no trigger preceded it within 8 s" in caption
     assert "the gain was not back" in caption
+
+
+def test_a_verdict_of_a_single_row_is_shaded_too(material: StudyMaterial) -> None:
+    episode = exemplary_inconsistency(material.records, REPLAN_GAIN)
+    assert episode is not None
+    time = episode.columns["time"]
+    consistent = np.ones(time.size, bool)
+    consistent[[10, 20, 21, 22, -1]] = False
+    flipping = episode._replace(columns={**episode.columns, "consistent": consistent})
+    spans = [(10, 11), (20, 23), (-1, -1)]
+    assert inconsistent_spans(flipping.columns) == [
+        (time[a], time[b]) for a, b in spans
+    ]
+    with styled():
+        figure = gain.draw(flipping, REPLAN_GAIN).figure
+    assert figure is not None
+    shades = [patch.get_x() for patch in figure.axes[1].patches]
+    assert shades == pytest.approx([time[a] - episode.onset for a, _ in spans])
 
 
 def test_a_study_in_which_all_agree_shows_the_law_alone(

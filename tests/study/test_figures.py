@@ -202,6 +202,17 @@ def test_missed_lane_changes_count_in_the_lead_times(
         assert np.all(np.asarray(line.get_ydata()) == 0.0)
 
 
+def test_an_axis_without_a_bar_has_no_numbers_but_zero(
+    material: StudyMaterial,
+) -> None:
+    trials = material.trials.assign(false_triggers_per_km=0.0, missed_per_km=0.0)
+    with styled():
+        exhibit = detection.draw(material._replace(trials=trials))
+    for axes in panels(exhibit)[1:]:
+        assert axes.get_xticks().tolist() == [0.0]
+        assert "none" in " ".join(text.get_text() for text in axes.texts)
+
+
 def test_virtual_drivers_have_no_workload(material: StudyMaterial) -> None:
     (exhibit,) = workload.draw(material)
     assert exhibit.figure is None

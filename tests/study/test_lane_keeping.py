@@ -127,6 +127,17 @@ def test_a_slow_end_of_a_lane_change_is_no_departure() -> None:
     assert departures(columns) == []
 
 
+def test_a_lane_change_cut_by_the_record_is_no_departure() -> None:
+    # Crosses at 14 s and would settle at 18 s; the record ends, or starts, between.
+    columns = changes([(10.0, 8.0, RIGHT)])
+    time = columns["time"]
+    before = {name: values[time < 14.5] for name, values in columns.items()}
+    after = {name: values[time > 13.5] for name, values in columns.items()}
+    for part in (before, after):
+        assert len(cut(part).dropped) == 1
+        assert departures(part) == []
+
+
 def test_crossing_the_line_and_back_is_a_departure() -> None:
     # At 0.5 m beyond the line it turns: the wheels stay on the line all the while.
     columns = changes([(10.0, 4.0, RIGHT), (11.5, 4.0, LEFT)])

@@ -52,6 +52,31 @@ def test_the_condition_with_most_missing_is_named(material: StudyMaterial) -> No
     )
 
 
+def test_all_conditions_with_most_missing_are_named(material: StudyMaterial) -> None:
+    lost = material.trials["num_lane_changes"].mask(
+        material.trials["condition"].isin(["strong-normal", "weak-gentle"]), 1.0
+    )
+    text = " ".join(
+        overview.run_sentences(with_trials(material, num_lane_changes=lost))
+    )
+    assert (
+        "Fewest were completed in strong-normal and weak-gentle: each 3 of 6." in text
+    )
+
+
+def test_departures_are_told_beside_the_time_they_were_counted_in(
+    material: StudyMaterial,
+) -> None:
+    # Departures count in the whole record: 3 or 9 trials of half an hour a strength.
+    study = with_trials(
+        material, num_lane_departures=1, duration=1800.0, lane_keeping_duration=60.0
+    )
+    assert overview.departure_sentence(study) == (
+        "A wheel over a line outside lane changes: manual 3 in 1.50 h, strong 9 in "
+        "4.50 h and weak 9 in 4.50 h of driving."
+    )
+
+
 def test_a_short_course_has_no_lane_change_planned(material: StudyMaterial) -> None:
     text = " ".join(overview.run_sentences(with_settings(material, length=900.0)))
     assert "too short for an overtaking event" in text

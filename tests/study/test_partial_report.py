@@ -83,6 +83,21 @@ def test_a_participant_without_a_cell_is_named(
     assert "Dropped data" in text
 
 
+def test_a_crossing_that_is_no_lane_change_is_named_with_its_reason(
+    study_folder: Path, tmp_path: Path
+) -> None:
+    folder = part(study_folder, tmp_path / "d", lambda *_: True)
+    trials = pd.read_csv(folder / TRIALS_FILE)
+    dropped = pd.Series([None] * len(trials), dtype=object)
+    dropped[4] = "9.50 s: started before the record; 99.25 s: crossed back within 3 s"
+    trials.assign(dropped_changes=dropped).to_csv(folder / TRIALS_FILE, index=False)
+    text = " ".join(words(folder).split())
+    where = f"{trials['participant'][4]} {trials['condition'][4]}, crossing at"
+    assert f"{where} 9.50 s started before the record" in text
+    assert f"{where} 99.25 s crossed back within 3 s" in text
+    assert "No data had to be dropped" not in text
+
+
 def test_nobody_changing_lanes_is_reported(study_folder: Path, tmp_path: Path) -> None:
     folder = part(study_folder, tmp_path / "n", lambda who, _: who == 1)
     changes = pd.read_csv(folder / LANE_CHANGES_FILE)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from math import isinf
+
 import numpy as np
 from jaxtyping import Float
 
@@ -15,7 +17,7 @@ from costeer.study.definitions import (
     runs,
     unknown,
 )
-from costeer.study.segments import Segments
+from costeer.study.segments import DroppedChange, LaneChange, Segments
 
 _NO_KEEPING = "the record has no lane keeping outside lane changes and events"
 
@@ -88,16 +90,19 @@ def lane_departures(
     segments: Segments,
     parameters: MeasureParameters = DEFAULTS,
 ) -> tuple[slice, ...]:
-    """Stretches with a wheel over any line outside a completed lane change.
+    """Stretches with a wheel over any line outside a lane change.
 
     A lane change lasts here from the first to the last of its yaw and its lateral
-    speed, so that a slow approach to the new lane's centre is no departure. Crossing
-    the line and back is one.
+    speed, so that a slow approach to the new lane's centre is no departure; one that
+    the start or the end of the record cuts is a lane change here too. Crossing the
+    line and back is a departure.
     """
     over = _off_centre(columns, parameters) > (
         (parameters.lane_width - parameters.car_width) / 2.0
     )
-    for change in segments.changes:
+    made: list[LaneChange | DroppedChange] = list(segments.changes)
+    made += [each for each in segments.dropped if _is_cut(each)]
+    for change in made:
         start, end = change.start_time, change.end_time
         span = excursion(
             columns["time"],
@@ -109,6 +114,11 @@ def lane_departures(
             start, end = min(start, span[0]), max(end, span[1])
         over[within(columns["time"], start, end)] = False
     return tuple(runs(over))
+
+
+def _is_cut(dropped: DroppedChange) -> bool:
+    """Whether the start or the end of the record cuts a lane change."""
+    return isinf(dropped.start_time) or isinf(dropped.end_time)
 
 
 def _off_centre(columns: Columns, parameters: MeasureParameters) -> Signal:

@@ -44,7 +44,7 @@ def draw(material: StudyMaterial) -> Exhibit:
         lacking = "No trial of this study has triggers to judge."
         return not_drawn(NAME, TITLE, lacking)
     figure = new_figure(FULL_WIDTH_MM, 66.0)
-    margins = Margins(left=14.0, right=11.0, top=8.0, between_columns=9.0)
+    margins = Margins(left=14.0, right=11.0, top=8.0, between_columns=11.0)
     widths = (1.25, 0.2, 0.8, 0.8)
     left, spacer, middle, right = panels(figure, 1, 4, margins, widths)[0]
     spacer.remove()
@@ -53,7 +53,8 @@ def draw(material: StudyMaterial) -> Exhibit:
     _rate_bars(right, material, judged, "missed_per_km")
     middle.set_xlabel("False triggers [1/km]")
     right.set_xlabel("Missed changes [1/km]")
-    right.tick_params(labelleft=False)
+    # Marks without names would claim the numbers of the panel to their left.
+    right.tick_params(labelleft=False, left=False)
     panel_letter(left, "a")
     panel_letter(middle, "b")
     panel_letter(right, "c")
@@ -121,10 +122,28 @@ def _rate_bars(
             interval_bar(axes, (mean, place), False, lower, upper)
         _value(axes, place, mean)
         largest = max(largest, mean + upper)
-    axes.set_xlim(0.0, 1.08 * largest if largest > 0.0 else 1.0)
-    axes.locator_params(axis="x", nbins=4)
+    if largest > 0.0:
+        axes.set_xlim(0.0, 1.08 * largest)
+        axes.locator_params(axis="x", nbins=4)
+    else:
+        _nothing(axes)
     axes.set_ylim(len(names) - 0.4, -0.6)
     axes.set_yticks(range(len(names)), [_short(name) for name in names])
+
+
+def _nothing(axes: Axes) -> None:
+    """Say that there is none: numbers on an axis without a bar would mislead."""
+    axes.set_xlim(0.0, 1.0)
+    axes.set_xticks([0.0])
+    axes.text(
+        0.5,
+        0.5,
+        "none in any\ncondition",
+        transform=axes.transAxes,
+        fontsize=SMALL,
+        ha="center",
+        va="center",
+    )
 
 
 def _value(axes: Axes, place: int, mean: float) -> None:

@@ -131,6 +131,19 @@ def falls(flags: NDArray[np.bool_]) -> NDArray[np.intp]:
     return np.flatnonzero(flags & ~after)
 
 
+def inconsistent_spans(columns: dict[str, NDArray[Any]]) -> list[tuple[float, float]]:
+    """Start and end [s] of every stretch with an inconsistent verdict.
+
+    Each ends at the first consistent row after it, so that a verdict of a single row
+    has a width too.
+    """
+    time = columns["time"]
+    inconsistent = ~np.ma.filled(columns["consistent"], True)
+    after = np.minimum(falls(inconsistent) + 1, time.size - 1)
+    starts = rises(inconsistent)
+    return list(zip(time[starts].tolist(), time[after].tolist(), strict=True))
+
+
 def _episode(key: tuple[int, str], path: Path, found: Inconsistency) -> Episode:
     record = read_record(path, _SHOWN)
     time = record.columns["time"]

@@ -7,7 +7,7 @@ from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
 from costeer.controller.strength import StrengthParameters, haptic_gain
-from costeer.study.figures.episodes import Episode
+from costeer.study.figures.episodes import Episode, inconsistent_spans
 from costeer.study.figures.exhibit import Exhibit
 from costeer.study.figures.style import (
     COLUMN_WIDTH_MM,
@@ -109,10 +109,14 @@ def gain_over(
 
 def _draw_record(axes: Axes, episode: Episode, replan_gain: float) -> None:
     time = episode.columns["time"] - episode.onset
-    inconsistent = ~np.ma.filled(episode.columns["consistent"], True)
-    axes.fill_between(
-        time, 0.0, 1.0, where=inconsistent, step="post", color=SHADE, linewidth=0.0
-    )
+    for start, end in inconsistent_spans(episode.columns):
+        axes.axvspan(
+            start - episode.onset,
+            end - episode.onset,
+            facecolor=SHADE,
+            zorder=-1,
+            linewidth=0,
+        )
     colour = STRENGTH_COLOURS[episode.condition.split("-")[0]]
     axes.plot(time, episode.columns["haptic_gain"], color=colour, linewidth=1.3)
     _threshold(axes, replan_gain)

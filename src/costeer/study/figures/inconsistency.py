@@ -9,7 +9,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
-from costeer.study.figures.episodes import Episode, rises
+from costeer.study.figures.episodes import Episode, inconsistent_spans
 from costeer.study.figures.exhibit import Exhibit, not_drawn
 from costeer.study.figures.style import (
     FAINT,
@@ -192,13 +192,15 @@ def _zero(axes: Axes) -> None:
 
 def _common(axes: list[Axes], time: NDArray[np.float64], episode: Episode) -> None:
     """Time axis, shading and the moments that matter, the same in every panel."""
-    inconsistent = ~np.ma.filled(episode.columns["consistent"], True)
-    starts, ends = rises(inconsistent), rises(~inconsistent)
-    for start in starts:
-        later = ends[ends > start]
-        end = time[later[0]] if later.size else time[-1]
+    for start, end in inconsistent_spans(episode.columns):
         for panel in axes[:3] + axes[4:]:
-            panel.axvspan(time[start], end, facecolor=SHADE, zorder=-1, linewidth=0)
+            panel.axvspan(
+                start - episode.onset,
+                end - episode.onset,
+                facecolor=SHADE,
+                zorder=-1,
+                linewidth=0,
+            )
     moments = {
         "trigger": episode.trigger,
         "inconsistent": episode.onset,

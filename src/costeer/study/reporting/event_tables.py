@@ -37,7 +37,7 @@ def lane_changes_table(material: StudyMaterial) -> Table:
         name="lane-changes",
         title="Lane changes planned, completed and dropped",
         note="Missing: planned minus completed. Dropped: crossings of the line that "
-        "make no lane change by the definition; the reasons stand in trials.csv. "
+        "make no lane change by the definition; each is named with the dropped data. "
         "Assisted: completed while the guidance followed a lane-change path.",
         header=(
             "Condition",

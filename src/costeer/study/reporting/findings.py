@@ -149,7 +149,7 @@ def _factor_sentence(material: StudyMaterial, quantity: Quantity) -> str:
     names = {
         "strength": "strength",
         "change_duration": "planned duration",
-        "strength:change_duration": "their interaction",
+        "strength:change_duration": "the interaction of the two",
     }
     rows = [row for row in material.tests.tests if row.measure == quantity.name]
     if quantity.name in BY_STRENGTH or not any(r.effect in names for r in rows):

@@ -141,16 +141,19 @@ def _changes_sentence(material: StudyMaterial) -> str:
         return (
             "The course is too short for an overtaking event: no lane change planned."
         )
-    fewest = min(parts, key=lambda each: each.completed / each.planned)
+    fewest = min(each.completed / each.planned for each in parts)
     text = (
         f"Of {plural(whole.planned, 'planned lane change')} {whole.completed} were "
         f"completed ({percent(whole.completed, whole.planned)}); {_dropped(whole)}."
     )
-    if fewest.completed == fewest.planned:
+    if fewest == 1.0:
         return text
+    least = [each for each in parts if each.completed / each.planned == fewest]
+    where = listed([each.name for each in least])
+    each_of = "each " if len(least) > 1 else ""
     return (
-        f"{text} Fewest were completed in {fewest.name}: {fewest.completed} of "
-        f"{fewest.planned}."
+        f"{text} Fewest were completed in {where}: {each_of}{least[0].completed} of "
+        f"{least[0].planned}."
     )
 
 
@@ -246,7 +249,7 @@ def departure_sentence(material: StudyMaterial) -> str:
     parts = []
     for strength in strengths_driven(material):
         rows = trials[trials["strength"] == strength]
-        hours = float(rows["lane_keeping_duration"].sum()) / 3600.0
+        hours = float(rows["duration"].sum()) / 3600.0
         amount = int(rows["num_lane_departures"].sum())
         parts.append(f"{strength} {amount} in {number(hours, 2)} h")
-    return f"In lane keeping: {listed(parts)}."
+    return f"A wheel over a line outside lane changes: {listed(parts)} of driving."

@@ -94,7 +94,8 @@ def _lane_changes(material: StudyMaterial, pictures: Mapping[str, Picture]) -> S
     text = (
         "A lane change lasts from the last yaw within 0.5 deg before the crossing of "
         "the line to the first after it. Overshoot is the distance from the new lane's "
-        "centre at the first lateral extremum after the crossing.",
+        "centre at the first lateral extremum after the crossing, on either side: a "
+        "car that turns back short of the centre counts too.",
     )
     items = (*_chosen(pictures, names), event_tables.durations_table(material))
     return Section("lane-change-measures", "Lane changes", text, items)

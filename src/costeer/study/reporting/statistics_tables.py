@@ -25,6 +25,8 @@ EFFECTS = {
     "strength:change_duration": "strength × planned duration",
 }
 
+_ALL_OF_LANE_CHANGES = "All measures of lane changes"
+
 
 def effects_table(material: StudyMaterial) -> Table:
     """Return the analyses of variance, as published beside within subjects."""
@@ -149,19 +151,31 @@ def _pair_cells(row: PairRow | None, quantity: Quantity) -> tuple[str, str, str,
 def dropped_table(material: StudyMaterial) -> Table | None:
     """Return the data that no test could use; None if there are none."""
     titles = {each.name: each.title for each in shown_quantities(material)}
-    dropped = material.tests.dropped
-    if not dropped:
-        return None
-    rows = [
+    rows = _dropped_crossings(material) + [
         (titles.get(row.measure, row.measure), row.participant, row.cell, row.reason)
-        for row in dropped
+        for row in material.tests.dropped
     ]
+    if not rows:
+        return None
     return Table(
         name="dropped",
         title="Dropped data",
-        note="Also in dropped.csv.",
+        note="Also in dropped.csv; dropped crossings in trials.csv.",
         header=("Measure", "Participant", "Cell", "Reason"),
         rows=tuple(rows),
         num_labels=4,
         prose=True,
     )
+
+
+def _dropped_crossings(material: StudyMaterial) -> list[tuple[str, str, str, str]]:
+    """Name the crossings of the line that make no lane change."""
+    if "dropped_changes" not in material.trials:
+        return []
+    known = material.trials.dropna(subset=["dropped_changes"])
+    columns = (known[name] for name in ("participant", "condition", "dropped_changes"))
+    return [
+        (_ALL_OF_LANE_CHANGES, str(participant), f"{condition}, crossing at {at}", why)
+        for participant, condition, text in zip(*columns, strict=True)
+        for at, _, why in (each.partition(": ") for each in text.split("; ") if each)
+    ]
