@@ -98,6 +98,11 @@ def test_a_crossing_that_is_no_lane_change_is_named_with_its_reason(
     assert "No data had to be dropped" not in text
 
 
+def test_the_page_says_what_is_made_again(study_folder: Path, tmp_path: Path) -> None:
+    text = " ".join(words(part(study_folder, tmp_path / "p", lambda *_: True)).split())
+    assert "makes all but the records again; with people it leaves" in text
+
+
 def test_nobody_changing_lanes_is_reported(study_folder: Path, tmp_path: Path) -> None:
     folder = part(study_folder, tmp_path / "n", lambda who, _: who == 1)
     changes = pd.read_csv(folder / LANE_CHANGES_FILE)

@@ -201,7 +201,8 @@ def _making(material: StudyMaterial) -> Section:
         "records and settings below; there is no date in them. The folder holds the "
         "records (records/), the tables as CSV (trials, lane_changes, tests, pairs, "
         "summaries, dropped) and the figures as SVG (figures/). costeer report makes "
-        "all but the records and the first two tables again.",
+        "all but the records again; with people it leaves the first two tables, which "
+        "hold their answers, as they are.",
     )
     items = (
         making.settings_table(material),
