@@ -18,6 +18,8 @@ from costeer.controller.actuation import (
     initial_state,
     step,
 )
+from costeer.plant.parameters import ColumnParameters
+from costeer.plant.steering import motor_torque
 from tests.controller.samples import DT
 
 PARAMETERS = ActuationParameters()
@@ -55,6 +57,15 @@ def test_a_lost_instruction_is_no_torque_within_100_ms(lost: float) -> None:
     torques = applied([9.0] * 60 + [lost] * 6)
     assert torques[59] == 5.0
     assert torques[65] == 0.0  # six steps are 100 ms
+
+
+def test_the_motor_too_lets_go_within_100_ms_of_a_lost_instruction() -> None:
+    torques = applied([9.0] * 60 + [math.nan] * 6)
+    column, given = ColumnParameters(), 5.0
+    for asked in torques[60:]:
+        given = motor_torque(column, given, asked, DT)
+    # Its lag of 20 ms never ends; the rest is less than the wheel's friction holds.
+    assert abs(given) < column.friction / 2.0
 
 
 def test_a_lost_gain_is_no_torque_within_100_ms() -> None:

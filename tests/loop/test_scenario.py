@@ -22,8 +22,8 @@ STRONG = TrialSetup(condition="strong-normal", strength_factor=1.0)
 REFUSED = {
     "strength_factor is 1.5; give a number from 0.0 to 1.0": {"strength_factor": 1.5},
     "length is 50.0; give a number from 100.0 to 200000.0 m": {"length": 50.0},
-    "speed is 80.0; give a number from 5.0 to 31.0 m/s": {"speed": 80.0},
-    "speed is nan; give a number from 5.0 to 31.0 m/s": {"speed": math.nan},
+    "speed is 80.0; give a number from 12.0 to 31.0 m/s": {"speed": 80.0},
+    "speed is nan; give a number from 12.0 to 31.0 m/s": {"speed": math.nan},
     "initial_offset is -2.0; give a number": {"initial_offset": -2.0},
     "hold_time is -1.0; give a number from 0.0 to 10.0 s": {"hold_time": -1.0},
     "inconsistency_threshold is inf; give": {"inconsistency_threshold": math.inf},

@@ -25,13 +25,14 @@ class ActuationParameters(NamedTuple):
         torque_rate_limit: Fastest change [N·m/s]. Source: assumed, so that a change
             of mode is no jump; it does not bind within a lane change.
         fault_rate_limit: Fastest fall when the instruction is not finite [N·m/s].
-            Source: assumed, from the limit to nothing within 80 ms.
+            Source: assumed, from the limit to nothing within 40 ms, so that the
+            motor's lag is over within 100 ms too.
     """
 
     strength_factor: Real = STRONG
     torque_limit: Real = 5.0
     torque_rate_limit: Real = 30.0
-    fault_rate_limit: Real = 62.5
+    fault_rate_limit: Real = 125.0
 
 
 class ActuationState(NamedTuple):

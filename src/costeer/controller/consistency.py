@@ -124,7 +124,7 @@ def step(
     driver_work = xp.select(ready, mean(driver_power), math.nan)
     agreement = torque_agreement(instructed_torque, driver_torque)
     literal = is_consistent(parameters, guidance_work, driver_work, agreement)
-    held = state.time_in_verdict < parameters.hold_time
+    held = state.time_in_verdict < parameters.hold_time - dt / 2.0
     unknown = xp.logical_not(xp.isfinite(agreement))
     consistent = xp.select(held | unknown, state.consistent, literal)
     switched = consistent != state.consistent

@@ -93,6 +93,9 @@ class TrialSetup(NamedTuple):
     prediction_horizon: Real = PREDICTION_HORIZON
 
 
+SLOWEST = 12.0
+"""Least speed of a trial [m/s]: below it some drivers cannot overtake."""
+
 FASTEST = 31.0
 """Greatest speed of a trial [m/s]: the guidance is verified up to 110 km/h."""
 
@@ -108,7 +111,7 @@ class _Range(NamedTuple):
 _RANGES = {
     "strength_factor": _Range(0.0, 1.0, "-"),
     "length": _Range(100.0, 200_000.0, "m"),
-    "speed": _Range(5.0, FASTEST, "m/s"),
+    "speed": _Range(SLOWEST, FASTEST, "m/s"),
     "initial_offset": _Range(-1.5, 1.5, "m"),
     "hold_time": _Range(0.0, 10.0, "s"),
     "inconsistency_threshold": _Range(0.0, 100.0, "W"),

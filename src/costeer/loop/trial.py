@@ -174,7 +174,7 @@ def _metadata(
         "seed": setup.seed,
         "participant": setup.participant,
         "condition": setup.condition,
-        "strength_factor": setup.strength_factor,
+        "strength_factor": controller.actuation.strength_factor,
         "change_duration": setup.change_duration,
         "method": setup.method,
         "car": setup.car,
