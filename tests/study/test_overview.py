@@ -103,8 +103,9 @@ def test_when_every_lane_change_is_missed_it_is_said(material: StudyMaterial) ->
 
 def test_false_triggers_are_told_per_kilometre(material: StudyMaterial) -> None:
     study = with_trials(material, num_false_triggers=2, distance=1000.0)
-    assert "42 false triggers in 21 km (2.000 per km)" in overview.detection_sentence(
-        study
+    assert (
+        "42 false triggers in 21 km (2.000 per km, 95 % interval 1.441 to 2.703)"
+        in overview.detection_sentence(study)
     )
 
 

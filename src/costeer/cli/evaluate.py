@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from costeer.cli.console import note
 from costeer.cli.validate import fraction, positive
+
+if TYPE_CHECKING:
+    from costeer.training.recordings import Recording
 
 _SAMPLES = (
     ("prevalence", "prevalence"),
@@ -86,8 +90,7 @@ def evaluate(
         false_per_km=false_per_km,
     )
     recordings = read_recordings(files)
-    for line in dict.fromkeys(line for each in recordings for line in each.notes):
-        note(f"note on {line}")
+    print_notes(recordings)
     result = judge(network.weights, recordings, parameters)
     result = {"intention_model_hash": network.hash, **result}
     if json:
@@ -96,6 +99,13 @@ def evaluate(
         typer.echo(encoder.dumps(result, indent=2))
     else:
         print_evaluation(result, f"Network {network.hash[:12]}")
+
+
+def print_notes(recordings: Sequence[Recording]) -> None:
+    """Say what should be known before a judgement of the recordings is trusted."""
+    for recording in recordings:
+        for line in recording.notes:
+            note(f"note on {line}")
 
 
 def print_evaluation(result: dict[str, Any], title: str) -> None:

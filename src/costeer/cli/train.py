@@ -10,6 +10,9 @@ import typer
 
 from costeer.cli.validate import at_least, in_range
 
+FEWEST_DRIVERS = 3
+"""One each for training, validation and test."""
+
 
 def train(
     files: Annotated[
@@ -22,7 +25,8 @@ def train(
     simulate: Annotated[
         int,
         typer.Option(
-            help="Simulate manual trials of so many drivers.", callback=at_least(0)
+            help="Simulate manual trials of so many drivers.",
+            callback=in_range(0, 10_000),
         ),
     ] = 0,
     seed: Annotated[
@@ -57,20 +61,26 @@ def train(
             "nothing to learn from: name trial records, or simulate drivers with "
             "--simulate 60"
         )
+    if not files and simulate < FEWEST_DRIVERS:
+        raise ValueError(
+            f"--simulate {simulate} is too few: training, validation and test need "
+            f"different drivers, at least {FEWEST_DRIVERS}"
+        )
     from costeer.cli.console import note, progress
-    from costeer.cli.evaluate import print_evaluation
+    from costeer.cli.evaluate import print_evaluation, print_notes
     from costeer.intention.weights import save_weights
     from costeer.training import train as training
     from costeer.training.dataset import simulate_recordings
     from costeer.training.recordings import read_recordings
 
-    _check_writable(out)
+    _check_place(out)
     parameters = training.DEFAULTS
     if hidden:
         parameters = parameters._replace(hidden_sizes=(hidden,))
     if steps:
         parameters = parameters._replace(fit=parameters.fit._replace(num_steps=steps))
     recordings = read_recordings(files or [])
+    print_notes(recordings)
     if simulate:
         with progress("simulated drivers", simulate) as advance:
             recordings += simulate_recordings(
@@ -96,14 +106,18 @@ def _source(files: list[Path] | None, simulate: int) -> str:
     return " and ".join(parts)
 
 
-def _check_writable(out: Path) -> None:
+def _check_place(out: Path) -> None:
     """Find out before the training whether its result can be written.
 
     Raises:
-        OSError: If it cannot.
+        ValueError: If the name is not of a file of weights.
+        OSError: If it cannot be written.
     """
-    if out.is_dir():
-        raise IsADirectoryError(21, "is a folder; name a file such as", f"{out}/i.npz")
+    if out.suffix != ".npz" or (out.exists() and not out.is_file()):
+        raise ValueError(
+            f"--out {out} cannot become a file of weights; give a file's name that "
+            "ends in .npz"
+        )
     out.parent.mkdir(parents=True, exist_ok=True)
     probe = out.with_name(f".{out.name}.probe")
     probe.touch()

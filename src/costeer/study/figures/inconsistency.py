@@ -75,7 +75,9 @@ def _caption(episode: Episode) -> str:
         f"{episode.lowest_gain:.3f}. Shaded: verdict inconsistent (torque agreement "
         "negative and the gap of the pseudo-works above its threshold). Guidance "
         "torque is the instructed one, before gain, strength and limit; applied is "
-        "what the motor gives. Positive is to the left. Chosen by rule: the first, in "
+        "what the motor gives. Positive is to the left. Below the re-plan gain a new "
+        "plan may be made at every sample, and the mode alternate, until the verdict "
+        "turns; the motor gives next to nothing then. Chosen by rule: the first, in "
         "order of participants and conditions, that followed a trigger, led to a "
         "re-plan and recovered, or else the one nearest to that."
     )

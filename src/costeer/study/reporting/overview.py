@@ -194,9 +194,23 @@ def detection_sentence(material: StudyMaterial) -> str:
     return (
         f"{_announced(changes)} Missed: {missed}. "
         f"{plural(false, 'false trigger')} in {number(distance, 0)} km "
-        f"({number(false / distance, 3)} per km), and {early} early, "
-        "3 to 5 s before the crossing."
+        f"({number(false / distance, 3)} per km, {_rate_interval(false, distance)}), "
+        f"and {early} early, 3 to 5 s before the crossing."
     )
+
+
+def _rate_interval(count: int, distance: float) -> str:
+    """Exact 95 % interval of a Poisson rate (Garwood 1936), as a text.
+
+    Args:
+        count: Of events.
+        distance: In which they were counted [km].
+    """
+    from scipy.stats import chi2  # its import takes seconds
+
+    low = float(chi2.ppf(0.025, 2 * count)) / 2.0 if count else 0.0
+    high = float(chi2.ppf(0.975, 2 * count + 2)) / 2.0
+    return f"95 % interval {number(low / distance, 3)} to {number(high / distance, 3)}"
 
 
 def _announced(changes: pd.DataFrame) -> str:
