@@ -131,11 +131,31 @@ def test_an_output_that_is_a_folder_is_refused_before_training(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert main(["train", "--simulate", "3", "--out", str(tmp_path)]) == 2
-    assert str(tmp_path) in refusal(capsys)
+    assert f"--out {tmp_path} cannot become" in refusal(capsys)
+
+
+def test_another_file_is_never_replaced_by_weights(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    thesis, device = tmp_path / "thesis.tex", tmp_path / "device.npz"
+    thesis.write_text("years")
+    device.symlink_to("/dev/null")
+    for out in (thesis, device):
+        assert main(["train", "--simulate", "3", "--out", str(out)]) == 2
+        assert "give a file's name that ends in .npz" in refusal(capsys)
+    assert thesis.read_text() == "years"
+    assert device.is_symlink()
 
 
 @pytest.mark.parametrize(
-    "option", [("--simulate", "-1"), ("--hidden", "0"), ("--seed", "-1")]
+    "option",
+    [
+        ("--simulate", "-1"),
+        ("--simulate", "2"),
+        ("--simulate", "99999999"),
+        ("--hidden", "0"),
+        ("--seed", "-1"),
+    ],
 )
 def test_impossible_numbers_are_refused(
     option: tuple[str, str], capsys: pytest.CaptureFixture[str]

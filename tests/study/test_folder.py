@@ -82,6 +82,15 @@ def test_other_sources_are_told_without_their_hashes(tmp_path: Path) -> None:
         begin(tmp_path, {**CONFIGURATION, "simulation_source": "b"})
 
 
+def test_a_study_of_another_version_asks_for_no_options(tmp_path: Path) -> None:
+    begin(tmp_path, {**CONFIGURATION, "inconsistency_threshold": 0.036})
+    with pytest.raises(
+        ValueError, match="of another version of costeer: .*0.036 there.*remove this"
+    ) as refused:
+        begin(tmp_path, {**CONFIGURATION, "inconsistency_threshold": 0.035})
+    assert "options" not in str(refused.value)
+
+
 def test_a_folder_of_other_things_is_refused_and_left_alone(tmp_path: Path) -> None:
     (tmp_path / "thesis.tmp").write_text("years")
     with pytest.raises(ValueError, match=r"not a study folder \(it holds thesis"):

@@ -189,26 +189,48 @@ def _refuse_foreign(path: Path) -> None:
 def _refuse_other(wanted: StudyFolder, found: StudyFolder) -> None:
     if wanted.hash == found.hash:
         return
+    told = differences(found, wanted)
+    if _OPTIONS & changed_settings(found, wanted):
+        raise ValueError(
+            f"{wanted.path} holds another study: {told}. Choose another folder, or "
+            "give the options of that study to resume it"
+        )
     raise ValueError(
-        f"{wanted.path} holds another study: {differences(found, wanted)}. Choose "
-        "another folder, or give the options of that study to resume it"
+        f"{wanted.path} holds a study of another version of costeer: {told}. Choose "
+        "another folder, or remove this one to run the study anew"
     )
 
 
 def differences(found: StudyFolder, wanted: StudyFolder) -> str:
     """Name the settings in which two studies differ."""
     there, here = found.configuration, wanted.configuration
-    changed = [
-        key
-        for key in sorted(there.keys() | here.keys())
-        if key not in _NOT_TOLD and there.get(key) != here.get(key)
+    told = [
+        f"{key} is {there.get(key)} there, {here.get(key)} here"
+        for key in sorted(changed_settings(found, wanted) - _NOT_TOLD)
     ]
-    told = [f"{key} is {there.get(key)} there, {here.get(key)} here" for key in changed]
     return "; ".join(told) or "it was simulated by other sources of costeer"
 
 
-_NOT_TOLD = ("order", "simulation_source")
+def changed_settings(found: StudyFolder, wanted: StudyFolder) -> set[str]:
+    """Return the names of the settings in which two studies differ."""
+    there, here = found.configuration, wanted.configuration
+    return {k for k in there.keys() | here.keys() if there.get(k) != here.get(k)}
+
+
+_NOT_TOLD = {"order", "simulation_source"}
 """Follows from the others; says nothing to a reader."""
+
+_OPTIONS = {
+    "participants",
+    "conditions",
+    "seed",
+    "method",
+    "intention",
+    "length",
+    "speed",
+    "car",
+}
+"""What a user chooses; all else comes with the version of costeer."""
 
 
 def _study_text(folder: StudyFolder, command: str) -> str:
