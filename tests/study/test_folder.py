@@ -85,7 +85,7 @@ def test_other_sources_are_told_without_their_hashes(tmp_path: Path) -> None:
 def test_a_study_of_another_version_asks_for_no_options(tmp_path: Path) -> None:
     begin(tmp_path, {**CONFIGURATION, "inconsistency_threshold": 0.036})
     with pytest.raises(
-        ValueError, match="of another version of costeer: .*0.036 there.*remove this"
+        ValueError, match=r"another version of costeer: .*0\.036 there.*remove this"
     ) as refused:
         begin(tmp_path, {**CONFIGURATION, "inconsistency_threshold": 0.035})
     assert "options" not in str(refused.value)
