@@ -155,6 +155,8 @@ def test_a_repeated_option_names_the_word_that_is_wrong(
 def test_a_process_without_stderr_still_works(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("sys.stderr", None)
     assert main(["analyse", "never-made.csv"]) == 2
+    if sys.stderr is not None:
+        sys.stderr.close()  # what main opened in its place
 
 
 def test_a_home_that_cannot_be_written_is_no_news() -> None:

@@ -183,5 +183,5 @@ def test_another_setting_gives_another_configuration_hash() -> None:
 
 
 def test_a_setup_out_of_range_is_refused_before_anything_runs() -> None:
-    with pytest.raises(ValueError, match="speed is 0; give a number from 5"):
+    with pytest.raises(ValueError, match="speed is 0; give a number from 12"):
         simulate_trial(STRONG._replace(speed=0))
