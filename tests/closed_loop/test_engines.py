@@ -78,6 +78,7 @@ def test_the_minute_holds_lane_changes_guidance_and_a_dispute() -> None:
     assert np.abs(column("numba", "applied_torque")).max() > 1.0
 
 
+@pytest.mark.no_cover  # tracing a minute of plain Python takes half of one
 @pytest.mark.parametrize("engine", ["python", "jax"])
 def test_every_column_agrees_to_one_in_a_billion(engine: str) -> None:
     # Rounding alone parts the engines, and the loop damps it: 1e-9 leaves room for
@@ -98,6 +99,7 @@ def test_another_plant_step_is_seen_as_a_difference() -> None:
     assert relative_difference(other, rows("numba")).max() > 1e-6
 
 
+@pytest.mark.slow  # compiles the batch, 10 s
 def test_drivers_together_in_jax_drive_as_each_alone() -> None:
     others = [STRONG, STRONG._replace(participant=3)]
     together = jax_rollouts(
