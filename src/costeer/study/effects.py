@@ -17,6 +17,9 @@ PARTIAL_ETA_SQUARED = "partial eta squared"
 COHENS_D = "Cohen's d"
 COHENS_D_Z = "Cohen's d_z"
 
+_SMALL_T = 1e-12
+"""Below this t is zero to all printed digits."""
+
 _LARGE_T = 1e4
 # Above it the library's noncentral t loses its digits (NaN at 1e5). There the normal
 # part of the statistic no longer counts: T = noncentrality / sqrt(chi2 / df), which at
@@ -131,6 +134,8 @@ def _noncentrality_of_t(statistic: float, df: float, probability: float) -> floa
     if statistic < 0.0:
         # The library loses digits in the lower half; mirrored they are all there.
         return -_noncentrality_of_t(-statistic, df, 1.0 - probability)
+    if statistic < _SMALL_T:
+        statistic = 0.0  # the library's power series underflows to NaN below
     if statistic > _LARGE_T:
         spread = stats.chi2.ppf(1.0 - probability, df) / df
         return statistic * math.sqrt(spread)
