@@ -61,6 +61,8 @@ def test_t_is_in_the_tails_at_the_ends_of_its_interval(
         statistic, low, high = -statistic, -size.high, -size.low
     else:
         low, high = size.low, size.high
+    if statistic < 1e-12:  # the library gives NaN for 1e-144
+        statistic = 0.0
     for limit, tail in ((low, 0.975), (high, 0.025)):
         below = stats.nct.cdf(statistic, n - 1, limit * math.sqrt(n))
         assert below == pytest.approx(tail, abs=1e-8)
