@@ -95,7 +95,7 @@ def _show_drawn(seed: int, count: int, speed: float, as_json: bool) -> None:
     print_table(
         ["parameter", "unit", "5 %", "median", "95 %"],
         rows,
-        f"{count} virtual drivers, seed {seed}: what differs between them",
+        f"{_virtual(count)}, seed {seed}: what differs between them",
     )
 
 
@@ -159,7 +159,7 @@ def _print_targets(seed: int, count: int, comparisons: list[Comparison]) -> None
     print_table(
         ["", "manual driving", "human", "value", ""],
         rows,
-        f"{count} virtual drivers, seed {seed}",
+        f"{_virtual(count)}, seed {seed}",
     )
     met = sum(c.met for c in comparisons)
     typer.echo(f"{met} of {len(comparisons)} targets met")
@@ -230,3 +230,8 @@ def _print_json(answer: dict[str, Any]) -> None:  # Any: JSON values
         return None if missing else value
 
     typer.echo(json.dumps(plain(answer), indent=2, ensure_ascii=False))
+
+
+def _virtual(count: int) -> str:
+    """How many virtual drivers, in words."""
+    return "1 virtual driver" if count == 1 else f"{count} virtual drivers"

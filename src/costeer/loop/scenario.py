@@ -134,6 +134,7 @@ def check_setup(setup: TrialSetup) -> None:
             raise ValueError(
                 f"{name} is {value}; give a number from {allowed.low} to "
                 f"{allowed.high} {allowed.unit}".removesuffix(" -")
+                + (", or 70km/h on the command line" if name == "speed" else "")
             )
     _check_choice("car", setup.car, tuple(CARS))
     _check_choice("driver", setup.driver, DRIVERS)

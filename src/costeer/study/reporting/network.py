@@ -42,7 +42,8 @@ def network_table(material: StudyMaterial) -> Table | None:
         title="The intention network by itself",
         note="From its file: results on drivers held out of its training, in manual "
         "driving, per sample and per trigger, with 95 % intervals where the file has "
-        "them. How it does in this study stands in the table before.",
+        "them. None of these drivers is in a study. How it does in this study stands "
+        "in the table before.",
         header=("Fact", "Value"),
         rows=(*_training_rows(facts), *_test_rows(facts.get("test", {}))),
         num_labels=2,
