@@ -100,6 +100,13 @@ def test_with_a_hold_time_a_verdict_stays_at_least_as_long() -> None:
     assert np.diff(changes).min() >= 12  # 0.2 s are 12 control steps
 
 
+def test_a_hold_time_lasts_as_many_steps_as_it_says() -> None:
+    # The verdict turned one step ago; 0.2 s are twelve steps, that one included.
+    turned = initial_state()._replace(consistent=False, time_in_verdict=DT)
+    verdicts = judged([(1.0, 1.0, 5.0)] * 20, HELD, turned)
+    assert [v.consistent for v in verdicts] == [False] * 11 + [True] * 9
+
+
 @pytest.mark.parametrize("lost", range(3))
 def test_a_lost_sample_does_not_blind_the_verdict(lost: int) -> None:
     conflict = (-1.0, 1.0, 5.0)

@@ -70,6 +70,12 @@ def test_a_record_has_every_column_and_field_of_the_format() -> None:
     assert json.loads(json.dumps(record.metadata)) == record.metadata
 
 
+def test_a_record_tells_the_strength_that_was_applied() -> None:
+    asked = STRONG._replace(length=150.0)
+    assert trial(asked).metadata["strength_factor"] == 1.0
+    assert trial(asked._replace(method="manual")).metadata["strength_factor"] == 0.0
+
+
 def test_rows_are_60_per_second_from_zero() -> None:
     time = trial(STRONG).columns["time"]
     # Summed steps of 1/60: rounding of 1e-16 a step.

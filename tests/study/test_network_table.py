@@ -26,7 +26,7 @@ FACTS = {
 def _shipped(monkeypatch: pytest.MonkeyPatch) -> None:
     def load() -> IntentionNetwork:
         # The weights themselves are not read: None stands in for them.
-        return IntentionNetwork(weights=None, facts=FACTS, hash="abc")  # type: ignore[arg-type]
+        return IntentionNetwork(weights=None, facts=FACTS, hash="abc")  # type: ignore[arg-type]  # as said above
 
     monkeypatch.setattr(network, "load_weights", load)
 

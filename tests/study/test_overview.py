@@ -109,6 +109,13 @@ def test_false_triggers_are_told_per_kilometre(material: StudyMaterial) -> None:
     )
 
 
+def test_no_false_trigger_is_no_proof_of_none(material: StudyMaterial) -> None:
+    study = with_trials(material, num_false_triggers=0, distance=1000.0)
+    # Without an event the exact upper limit is -ln(0.025) = 3.689 events.
+    told = "0 false triggers in 21 km (0.000 per km, 95 % interval 0.000 to 0.176)"
+    assert told in overview.detection_sentence(study)
+
+
 def test_no_inconsistency_needs_no_more_words(material: StudyMaterial) -> None:
     study = with_trials(material, num_inconsistencies=0)
     assert overview.inconsistency_sentence(study) == (

@@ -327,7 +327,7 @@ def test_data_frames_and_lists_give_the_same_as_arrays() -> None:
     expected = repr(study_tests(*tables))
     frames = [pd.DataFrame(table) for table in tables]
     lists = [{k: v.tolist() for k, v in table.items()} for table in tables]
-    assert repr(study_tests(*frames)) == expected  # type: ignore[arg-type]
+    assert repr(study_tests(*frames)) == expected  # type: ignore[arg-type]  # pandas has no stubs
     assert repr(study_tests(*lists)) == expected
 
 

@@ -90,4 +90,4 @@ def _open_closed_streams() -> None:
     """Give a process that was started without stdout or stderr a place to write."""
     for name in ("stdout", "stderr"):
         if getattr(sys, name) is None:
-            setattr(sys, name, Path(os.devnull).open("w"))  # noqa: SIM115
+            setattr(sys, name, Path(os.devnull).open("w"))  # noqa: SIM115  stays open

@@ -1,7 +1,7 @@
 """Pilot drivers: the inconsistency threshold δ from runs in which nobody disagrees.
 
 Pilot drivers have seeds of their own and are no participants of any study. Only the
-gap of the two pseudo-works is looked at, no measure of the study.
+gap of the two pseudo-works is looked at here, no measure of the study.
 """
 
 from __future__ import annotations
@@ -45,8 +45,9 @@ class PilotResult(NamedTuple):
 def agreeing_setups(participant: int) -> list[TrialSetup]:
     """Trials of one pilot driver in which driver and system want the same.
 
-    Lane keeping without leaders, and lane changes whose path has the driver's own
-    duration and starts with the driver's own plan, strong and weak.
+    Lane keeping without leaders, and lane changes whose path has the driver's median
+    planned duration and starts half of it before the planned crossing, strong and
+    weak. Single changes scatter about that median (decision 6).
     """
     setups = []
     for strength in (STRONG, WEAK):
