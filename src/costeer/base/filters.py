@@ -33,3 +33,24 @@ def coloured_noise(
     """
     kept = decay(dt, time_constant)
     return kept * state + deviation * xp.sqrt(1.0 - kept * kept) * normal
+
+
+@compiled
+def pade_delay(state: Real, value: Real, delay: Real, dt: Real) -> tuple[Real, Real]:
+    """First-order Pade delay (1 - T s / 2) / (1 + T s / 2), bilinear in `dt` [s].
+
+    An all-pass: it changes no amplitude, and slow signals come out exactly `delay`
+    later. `initial_state` of a signal at rest at x is 2 x delay / (delay + dt).
+
+    Args:
+        state: Its memory, in the unit of the value.
+        value: Now.
+        delay: T, longer than `dt` [s].
+        dt: Step [s].
+
+    Returns:
+        New state and delayed value.
+    """
+    share = (dt - delay) / (dt + delay)
+    delayed = state + share * value
+    return value - share * delayed, delayed

@@ -16,7 +16,6 @@ from costeer.bench.timing import (
     seconds_of,
 )
 from costeer.controller.realtime import ControlInput, control_step, packed_controller
-from costeer.drivers.driver import DriverNoise
 from costeer.intention.features import NUM_FEATURES, IntentionSample
 from costeer.intention.gru import NetworkWeights
 from costeer.intention.wavefront import (
@@ -41,8 +40,7 @@ def measure_control_step(effort: Effort) -> Outcome:
     lane = cruising_lane(parameters.road)
     memory = packed_controller(parameters.controller, lane)
     state = loop.initial_state(parameters)
-    quiet = DriverNoise(*([0.0] * len(DriverNoise._fields)))
-    sample = loop.sense(parameters, state, quiet)
+    sample = loop.sense(parameters, state)
     pack(memory.given, ControlInput(sample, float("nan"), False))
     control_step(*memory, loop.DT)
     figures = percentiles(

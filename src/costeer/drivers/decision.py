@@ -1,4 +1,9 @@
-"""Decision to overtake and to return: when, how long, with a glance or without."""
+"""Decision to overtake and to return: when, how long, with a glance or without.
+
+A driver overtakes when a slower leader is close and either slow enough to be worth it
+or has been in the way for longer than the driver's patience; a leader that is not
+slower than the driver wants to be is followed.
+"""
 
 from __future__ import annotations
 
@@ -30,8 +35,13 @@ class DecisionParameters(NamedTuple):
         decides: 1 if the driver overtakes, 0 if not [-]. Source: assumed.
         headway: Time gap to a slower leader at which overtaking is decided [s].
             Source: assumed, spread over the population.
-        return_distance: Distance ahead of the leader at which the return is decided
-            [m]. Source: assumed, spread over the population.
+        worthwhile_difference: Wanted speed above the leader's at which overtaking is
+            worth it at once [m/s]. Source: assumed, 3.6 km/h; the leaders of the
+            experiment are 5 to 15 km/h slower.
+        patience: How long a leader who is slower by less is followed [s]. Source:
+            assumed, spread over the population.
+        return_headway: Time gap ahead of the leader at which the return is decided
+            [s]. Source: assumed, spread over the population.
         change_duration: Median planned duration of the driver [s]. Source: assumed,
             such that the measured one is human.
         change_duration_spread: Standard deviation of the logarithm of the planned
@@ -44,19 +54,24 @@ class DecisionParameters(NamedTuple):
             assumed.
         glance_share: Share of lane changes with a glance before them [-]. Source:
             Jain et al. (2015), recordings of ten drivers, 0.84.
+        shoulder_share: Share of lane changes with a look over the shoulder, one of
+            those with a glance [-]. Source: assumed.
         settling_time: Pause after a lane change before the next decision [s].
             Source: assumed.
     """
 
     decides: Real = 1.0
     headway: Real = 2.3
-    return_distance: Real = 28.0
-    change_duration: Real = 6.9
+    worthwhile_difference: Real = 1.0
+    patience: Real = 6.0
+    return_headway: Real = 1.44
+    change_duration: Real = 7.2
     change_duration_spread: Real = 0.17
-    preparation_time: Real = 2.0
-    return_preparation_time: Real = 0.7
+    preparation_time: Real = 1.8
+    return_preparation_time: Real = 0.35
     preparation_spread: Real = 0.35
     glance_share: Real = 0.84
+    shoulder_share: Real = 0.3
     settling_time: Real = 1.0
 
 
@@ -68,7 +83,9 @@ class DecisionState(NamedTuple):
         time_in_phase: [s].
         preparation_time: From this decision until steering [s].
         change_duration: Planned for this lane change [s].
+        impatience: How long a slower leader has been in the way [s].
         looks: Whether this driver looks before this change.
+        looks_over_shoulder: Whether one of the looks is over the shoulder.
         started: Whether steering starts at this step.
         decided: Whether the decision fell at this step.
     """
@@ -77,7 +94,9 @@ class DecisionState(NamedTuple):
     time_in_phase: Real
     preparation_time: Real
     change_duration: Real
+    impatience: Real
     looks: Flag
+    looks_over_shoulder: Flag
     started: Flag
     decided: Flag
 
@@ -104,22 +123,47 @@ def initial_state() -> DecisionState:
         time_in_phase=0.0,
         preparation_time=0.0,
         change_duration=6.0,
+        impatience=0.0,
         looks=False,
+        looks_over_shoulder=False,
         started=False,
         decided=False,
     )
 
 
+class Surroundings(NamedTuple):
+    """What a decision looks at.
+
+    Attributes:
+        measurement: Where the car is and how fast.
+        leader: The car ahead.
+        wanted_speed: Of the driver on a free road [m/s].
+    """
+
+    measurement: Measurement
+    leader: LeaderState
+    wanted_speed: Real
+
+
 @compiled
-def wants_to_overtake(
-    parameters: DecisionParameters, measurement: Measurement, leader: LeaderState
-) -> Flag:
-    """Whether a slower leader in the own lane has come close enough."""
+def in_the_way(parameters: DecisionParameters, around: Surroundings) -> Flag:
+    """Whether a leader slower than wanted is close ahead in the own lane."""
+    leader, measurement = around.leader, around.measurement
     gap = leader.longitudinal_position - measurement.longitudinal_position
-    slower = leader.longitudinal_velocity < measurement.longitudinal_velocity + 0.5
     close = (gap > 0.0) & (gap < parameters.headway * measurement.longitudinal_velocity)
     ahead = leader.present & (leader.lane == measurement.lane)
-    return ahead & slower & close & (parameters.decides > 0.5)
+    return ahead & close & (leader.longitudinal_velocity < around.wanted_speed)
+
+
+@compiled
+def wants_to_overtake(
+    parameters: DecisionParameters, impatience: Real, around: Surroundings
+) -> Flag:
+    """Whether the leader in the way is worth it, or was there for too long."""
+    difference = around.wanted_speed - around.leader.longitudinal_velocity
+    worth_it = difference > parameters.worthwhile_difference
+    enough = worth_it | (impatience > parameters.patience)
+    return in_the_way(parameters, around) & enough & (parameters.decides > 0.5)
 
 
 @compiled
@@ -128,22 +172,22 @@ def wants_to_return(
 ) -> Flag:
     """Whether the leader is far enough behind."""
     lead = measurement.longitudinal_position - leader.longitudinal_position
-    return xp.logical_not(leader.present) | (lead > parameters.return_distance)
+    enough = parameters.return_headway * measurement.longitudinal_velocity
+    return xp.logical_not(leader.present) | (lead > enough)
 
 
 @compiled
 def next_phase(
     parameters: DecisionParameters,
     state: DecisionState,
-    measurement: Measurement,
-    leader: LeaderState,
+    around: Surroundings,
 ) -> Real:
     """Phase after this step [-]."""
     time = state.time_in_phase
     prepared = time >= state.preparation_time
     settled = time >= state.change_duration + parameters.settling_time
-    overtake = wants_to_overtake(parameters, measurement, leader)
-    back = wants_to_return(parameters, measurement, leader)
+    overtake = wants_to_overtake(parameters, state.impatience, around)
+    back = wants_to_return(parameters, around.measurement, around.leader)
     phase = state.phase
     done = (
         ((phase == CRUISING) & overtake)
@@ -160,8 +204,7 @@ def next_phase(
 def step(
     parameters: DecisionParameters,
     state: DecisionState,
-    measurement: Measurement,
-    leader: LeaderState,
+    around: Surroundings,
     draws: Draws,
     dt: Real,
 ) -> DecisionState:
@@ -170,12 +213,11 @@ def step(
     Args:
         parameters: Of this driver.
         state: What the driver is up to.
-        measurement: Where the car is and how fast.
-        leader: The car ahead.
+        around: Car, leader and wanted speed.
         draws: Random numbers of this step, used if a decision falls.
         dt: Control step [s].
     """
-    phase = next_phase(parameters, state, measurement, leader)
+    phase = next_phase(parameters, state, around)
     new = phase != state.phase
     decided = new & ((phase == PREPARING) | (phase == PREPARING_RETURN))
     median = xp.select(
@@ -190,12 +232,18 @@ def step(
         parameters.change_duration_spread * draws.duration_normal
     )
     looks = draws.glance_uniform < parameters.glance_share
+    over_shoulder = draws.glance_uniform < parameters.shoulder_share
+    waits = (phase == CRUISING) & in_the_way(parameters, around)
     return DecisionState(
         phase=phase,
         time_in_phase=xp.select(new, 0.0, state.time_in_phase + dt),
         preparation_time=xp.select(decided, preparation, state.preparation_time),
         change_duration=xp.select(decided, duration, state.change_duration),
+        impatience=xp.select(waits, state.impatience + dt, 0.0),
         looks=xp.select(decided, looks, state.looks),
+        looks_over_shoulder=xp.select(
+            decided, over_shoulder, state.looks_over_shoulder
+        ),
         started=new & ((phase == CHANGING) | (phase == RETURNING)),
         decided=decided,
     )

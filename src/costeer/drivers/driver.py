@@ -7,6 +7,7 @@ from typing import NamedTuple
 from costeer.base import array as xp
 from costeer.base.array import Real, compiled
 from costeer.drivers import (
+    arm,
     decision,
     gaze,
     longitudinal,
@@ -14,8 +15,18 @@ from costeer.drivers import (
     tracking,
     vision,
 )
-from costeer.drivers.arm import ArmCommand, ArmParameters, wanted_torque
-from costeer.drivers.decision import DecisionParameters, DecisionState, Draws
+from costeer.drivers.arm import (
+    ArmCommand,
+    ArmParameters,
+    ArmState,
+    wanted_torque,
+)
+from costeer.drivers.decision import (
+    DecisionParameters,
+    DecisionState,
+    Draws,
+    Surroundings,
+)
 from costeer.drivers.gaze import GazeDraws, GazeParameters, GazeState
 from costeer.drivers.longitudinal import (
     LongitudinalParameters,
@@ -24,7 +35,7 @@ from costeer.drivers.longitudinal import (
 )
 from costeer.drivers.reliance import RelianceParameters, RelianceState
 from costeer.drivers.tracking import TrackingParameters, TrackingState
-from costeer.drivers.vision import VisionParameters, VisionState
+from costeer.drivers.vision import VisionNoise, VisionParameters, VisionState
 from costeer.plant.parameters import (
     CarParameters,
     ColumnParameters,
@@ -59,10 +70,10 @@ class DriverParameters(NamedTuple):
 
 
 class DriverState(NamedTuple):
-    """What the driver remembers; `arm` is the muscle torque [N·m]."""
+    """What the driver remembers."""
 
     vision: VisionState
-    arm: Real
+    arm: ArmState
     reliance: RelianceState
     tracking: TrackingState
     decision: DecisionState
@@ -111,6 +122,7 @@ class DriverNoise(NamedTuple):
     glance_uniform: Real
     glance_side_uniform: Real
     leader_uniform: Real
+    tracker_uniform: Real
 
 
 NORMAL_DRAWS = 9
@@ -138,7 +150,7 @@ def initial_state(lateral_position: Real) -> DriverState:
     """A driver who aims at `lateral_position` [m]."""
     return DriverState(
         vision=vision.initial_state(),
-        arm=0.0,
+        arm=arm.initial_state(),
         reliance=reliance.initial_state(),
         tracking=tracking.initial_state(lateral_position),
         decision=decision.initial_state(),
@@ -161,14 +173,13 @@ def decide(
         preparation_normal=noise.preparation_time,
         glance_uniform=noise.look_uniform,
     )
-    return decision.step(
-        parameters.decision,
-        state.decision,
-        perception.measurement,
-        perception.leader,
-        draws,
-        dt,
+    around = Surroundings(
+        measurement=perception.measurement,
+        leader=perception.leader,
+        wanted_speed=parameters.longitudinal.preferred_speed
+        + state.longitudinal.speed_wander,
     )
+    return decision.step(parameters.decision, state.decision, around, draws, dt)
 
 
 @compiled
@@ -238,14 +249,17 @@ def see(
         near_distance,
         speed * eyes.anticipation_time,
     )
-    angle = vision.near_angle(measurement, wanted.near_position, near_distance)
-    new_state, compensation = vision.step(
-        eyes, state.vision, angle, noise.near, noise.motor, dt
+    new_state, asked = vision.step(
+        eyes,
+        state.vision,
+        vision.far_angle(measurement, wanted.far_slope),
+        vision.near_angle(measurement, wanted.near_position, near_distance),
+        speed,
+        VisionNoise(near=noise.near, motor=noise.motor),
+        dt,
     )
-    intended = vision.intended_angle(
-        eyes, knowledge.car, measurement, wanted, compensation
-    )
-    return new_state, intended + new_state.motor_noise
+    planned = vision.planned_angle(eyes, knowledge.car, speed, wanted.far_curvature)
+    return new_state, asked + planned
 
 
 @compiled

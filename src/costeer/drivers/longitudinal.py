@@ -30,8 +30,9 @@ class LongitudinalParameters(NamedTuple):
         preferred_speed: On a free road [m/s]. Source: paper, about 70 km/h.
         speed_deviation: Standard deviation of its slow wander [m/s]. Source: assumed.
         speed_time: Correlation time of the wander [s]. Source: assumed.
-        overtaking_speed: Faster than preferred while overtaking [m/s]. Source:
-            assumed, spread over the population; some drivers do not.
+        overtaking_speed: Faster than preferred from the decision to overtake until
+            the return [m/s]. Source: assumed, spread over the population; some
+            drivers do not.
         acceleration: Comfortable [m/s²]. Source: assumed; Treiber et al. (2000) have
             0.73.
         deceleration: Comfortable [m/s²]. Source: assumed, near the 1.67 of Treiber et
@@ -91,7 +92,7 @@ def wanted_speed(
     parameters: LongitudinalParameters, state: LongitudinalState, phase: Real
 ) -> Real:
     """Speed that the driver aims at in this phase [m/s]."""
-    overtaking = (phase == CHANGING) | (phase == PASSING)
+    overtaking = (phase == PREPARING) | (phase == CHANGING) | (phase == PASSING)
     more = xp.select(overtaking, parameters.overtaking_speed, 0.0)
     return parameters.preferred_speed + state.speed_wander + more
 

@@ -1,14 +1,17 @@
 """The population of virtual drivers: how they differ, drawn by seed and participant.
 
-Calibrated on manual driving only (docs/decisions/0005-drivers.md). Positive
-quantities are log-normal, shares are normal and clipped.
+Calibrated on manual driving only (docs/decisions/0009-drivers-frozen.md). A driver is
+a vector of correlated standard normal traits; positive quantities are log-normal in
+their trait, shares and signed quantities normal and clipped.
 """
 
 from __future__ import annotations
 
+from functools import cache
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from costeer.base.array import Real
 from costeer.drivers.arm import ArmParameters
@@ -20,10 +23,128 @@ from costeer.drivers.reliance import RelianceParameters
 from costeer.drivers.tracking import TrackingParameters
 from costeer.drivers.vision import VisionParameters
 
-POPULATION_VERSION = "1"
-"""Changes when a parameter or a spread of the drivers does."""
+POPULATION_VERSION = "2"
+"""Changes when a parameter, a spread or a correlation of the drivers does."""
 
 _POPULATION_STREAM = 0
+
+
+class Traits(NamedTuple):
+    """What differs between drivers, each standard normal over the population.
+
+    Attributes:
+        noise: Of seeing and steering.
+        lead_time: Of the near point's lead.
+        wander: Of the aim.
+        lane_bias: Preferred place in the lane.
+        stiffness: Of the arms.
+        arm_inertia: Of the arms.
+        arm_damping: Of the arms.
+        reliance: On guidance that agrees.
+        cocontraction: Against guidance that opposes.
+        duration: Of planned lane changes.
+        headway: At which overtaking is decided, and at which the return is.
+        patience: Behind a leader who is hardly slower.
+        shoulder: Share of looks over the shoulder.
+        glance: Size of glances.
+        preferred_speed: Against the suggested one.
+        overtaking_speed: Speeding up to overtake.
+    """
+
+    noise: Real
+    lead_time: Real
+    wander: Real
+    lane_bias: Real
+    stiffness: Real
+    arm_inertia: Real
+    arm_damping: Real
+    reliance: Real
+    cocontraction: Real
+    duration: Real
+    headway: Real
+    patience: Real
+    shoulder: Real
+    glance: Real
+    preferred_speed: Real
+    overtaking_speed: Real
+
+
+class Factor(NamedTuple):
+    """What several traits have in common.
+
+    Two traits of a factor are correlated by the product of their loadings; traits
+    without a common factor are independent.
+
+    Attributes:
+        name: Of the factor.
+        loadings: Names of traits and their correlation with the factor [-].
+        source: Where it is from, or why it is assumed.
+    """
+
+    name: str
+    loadings: dict[str, Real]
+    source: str
+
+
+FACTORS = (
+    Factor(
+        name="style",
+        loadings={
+            "preferred_speed": 0.5,
+            "overtaking_speed": 0.5,
+            "headway": -0.6,
+            "duration": -0.4,
+            "patience": -0.4,
+            "shoulder": -0.3,
+        },
+        source="Itkonen et al. (2017): one axis from calm to intensive driving; "
+        "loadings assumed",
+    ),
+    Factor(
+        name="arms",
+        loadings={"arm_inertia": 0.6, "arm_damping": 0.7, "stiffness": 0.6},
+        source="assumed: all three grow with the arms and their activation",
+    ),
+    Factor(
+        name="trust",
+        loadings={"reliance": 0.55, "cocontraction": -0.55},
+        source="assumed: who leaves more to the guidance stiffens less against it",
+    ),
+)
+"""Traits that go together. Noise and wander do not: standard deviation of lane
+position and steering activity are hardly correlated between drivers."""
+
+
+@cache
+def loadings() -> NDArray[np.float64]:
+    """Loadings of the traits on the factors, shape `(trait, factor)`."""
+    matrix = np.zeros((len(Traits._fields), len(FACTORS)))
+    for column, factor in enumerate(FACTORS):
+        for name, loading in factor.loadings.items():
+            matrix[Traits._fields.index(name), column] = loading
+    return matrix
+
+
+def correlation_matrix() -> NDArray[np.float64]:
+    """Correlations of the traits, shape `(trait, trait)`."""
+    common = loadings() @ loadings().T
+    return np.asarray(common + np.diag(1.0 - np.diag(common)), dtype=np.float64)
+
+
+def drawn_traits(seed: int, participant: int) -> Traits:
+    """Traits of the driver with this number.
+
+    Args:
+        seed: Of the population; other seeds are other people.
+        participant: Number of the driver.
+    """
+    entropy = [seed, _POPULATION_STREAM, participant]
+    generator = np.random.Generator(np.random.PCG64(np.random.SeedSequence(entropy)))
+    own = generator.standard_normal(len(Traits._fields))
+    common = generator.standard_normal(len(FACTORS))
+    explained = np.sum(loadings() ** 2, axis=1)
+    mixed = np.sqrt(1.0 - explained) * own + loadings() @ common
+    return Traits(*mixed.tolist())
 
 
 class PopulationParameters(NamedTuple):
@@ -42,12 +163,17 @@ class PopulationParameters(NamedTuple):
             al. (2013), range.
         stiffness_spread: Of the arm's stiffness [-], clipped to 8 to 20 N·m/rad.
             Source: Saleh et al. (2013), range.
+        arm_spread: Of the arms' inertia and damping [-]. Source: assumed, people's
+            size.
         reliance_spread: Of `reliance` [-]. Source: assumed.
         cocontraction_spread: Of `cocontraction` [-], clipped to 1.5 to 3. Source:
             assumed.
         duration_spread: Of the driver's median planned duration [-]. Source:
             assumed, calibrated on durations of real lane changes.
-        headway_spread: Of the headway of decision [-]. Source: assumed.
+        headway_spread: Of the headways at which overtaking and return are decided
+            [-]. Source: assumed.
+        patience_spread: Of the patience behind a leader [-]. Source: assumed.
+        shoulder_spread: Of the share of looks over the shoulder [-]. Source: assumed.
         preferred_speed_spread: Of the preferred speed [m/s]. Source: assumed.
         overtaking_speed_spread: Of the speeding up [m/s]. Source: assumed.
         glance_spread: Of glance amplitude [-]. Source: assumed.
@@ -58,29 +184,26 @@ class PopulationParameters(NamedTuple):
     near_noise_spread: Real = 0.2
     lead_time_spread: Real = 0.3
     stiffness_spread: Real = 0.2
+    arm_spread: Real = 0.15
     reliance_spread: Real = 0.2
     cocontraction_spread: Real = 0.2
     duration_spread: Real = 0.16
     headway_spread: Real = 0.12
+    patience_spread: Real = 0.4
+    shoulder_spread: Real = 0.15
     preferred_speed_spread: Real = 0.8
     overtaking_speed_spread: Real = 1.0
     glance_spread: Real = 0.1
 
 
-class _Draw:
-    """Draws around medians from one generator, in a fixed order."""
+def _positive(median: Real, spread: Real, trait: Real) -> Real:
+    """Log-normal with this median."""
+    return float(median * np.exp(spread * trait))
 
-    def __init__(self, generator: np.random.Generator) -> None:
-        self._generator = generator
 
-    def positive(self, median: Real, spread: Real) -> Real:
-        """Log-normal with this median."""
-        return float(median * np.exp(spread * self._generator.standard_normal()))
-
-    def between(self, mean: Real, spread: Real, low: Real, high: Real) -> Real:
-        """Normal, clipped."""
-        value = mean + spread * self._generator.standard_normal()
-        return float(np.clip(value, low, high))
+def _between(mean: Real, spread: Real, trait: Real, low: Real, high: Real) -> Real:
+    """Normal, clipped."""
+    return float(np.clip(mean + spread * trait, low, high))
 
 
 def participant_driver(
@@ -97,80 +220,122 @@ def participant_driver(
         speed: Suggested speed [m/s].
         population: Spreads between drivers.
     """
+    return driver_with(drawn_traits(seed, participant), speed, population)
+
+
+def driver_with(
+    traits: Traits, speed: Real, population: PopulationParameters | None = None
+) -> DriverParameters:
+    """Return the driver who has these traits.
+
+    Args:
+        traits: 0 for the usual driver, 1 for one standard deviation more.
+        speed: Suggested speed [m/s].
+        population: Spreads between drivers.
+    """
     spread = population or PopulationParameters()
-    entropy = [seed, _POPULATION_STREAM, participant]
-    draw = _Draw(np.random.Generator(np.random.PCG64(np.random.SeedSequence(entropy))))
     return DriverParameters(
-        vision=_vision(draw, spread),
-        arm=_arm(draw, spread),
-        reliance=_reliance(draw, spread),
-        tracking=_tracking(draw, spread),
-        decision=_decision(draw, spread),
-        gaze=_gaze(draw, spread),
-        longitudinal=_longitudinal(draw, spread, speed),
+        vision=_vision(traits, spread),
+        arm=_arm(traits, spread),
+        reliance=_reliance(traits, spread),
+        tracking=_tracking(traits, spread),
+        decision=_decision(traits, spread),
+        gaze=_gaze(traits, spread),
+        longitudinal=_longitudinal(traits, spread, speed),
     )
 
 
-def _vision(draw: _Draw, spread: PopulationParameters) -> VisionParameters:
+def _vision(traits: Traits, spread: PopulationParameters) -> VisionParameters:
     usual = VisionParameters()
-    noise = draw.positive(1.0, spread.near_noise_spread)
+    noise = _positive(1.0, spread.near_noise_spread, traits.noise)
     return usual._replace(
         near_noise=usual.near_noise * noise,
         motor_noise=usual.motor_noise * noise,
-        lead_time=draw.between(usual.lead_time, spread.lead_time_spread, 1.0, 2.5),
+        lead_time=_between(
+            usual.lead_time, spread.lead_time_spread, traits.lead_time, 1.0, 2.5
+        ),
     )
 
 
-def _arm(draw: _Draw, spread: PopulationParameters) -> ArmParameters:
+def _arm(traits: Traits, spread: PopulationParameters) -> ArmParameters:
     usual = ArmParameters()
-    stiffness = draw.positive(usual.stiffness, spread.stiffness_spread)
-    return usual._replace(stiffness=float(np.clip(stiffness, 8.0, 20.0)))
-
-
-def _reliance(draw: _Draw, spread: PopulationParameters) -> RelianceParameters:
-    usual = RelianceParameters()
-    tense = draw.positive(usual.cocontraction, spread.cocontraction_spread)
+    stiffness = _positive(usual.stiffness, spread.stiffness_spread, traits.stiffness)
     return usual._replace(
-        reliance=draw.between(usual.reliance, spread.reliance_spread, 0.0, 1.0),
+        stiffness=float(np.clip(stiffness, 8.0, 20.0)),
+        inertia=_positive(usual.inertia, spread.arm_spread, traits.arm_inertia),
+        damping=_positive(usual.damping, spread.arm_spread, traits.arm_damping),
+    )
+
+
+def _reliance(traits: Traits, spread: PopulationParameters) -> RelianceParameters:
+    usual = RelianceParameters()
+    tense = _positive(
+        usual.cocontraction, spread.cocontraction_spread, traits.cocontraction
+    )
+    return usual._replace(
+        reliance=_between(
+            usual.reliance, spread.reliance_spread, traits.reliance, 0.0, 1.0
+        ),
         cocontraction=float(np.clip(tense, 1.5, 3.0)),
     )
 
 
-def _tracking(draw: _Draw, spread: PopulationParameters) -> TrackingParameters:
+def _tracking(traits: Traits, spread: PopulationParameters) -> TrackingParameters:
     usual = TrackingParameters()
     return usual._replace(
-        wander_deviation=draw.positive(
-            usual.wander_deviation, spread.wander_deviation_spread
+        wander_deviation=_positive(
+            usual.wander_deviation, spread.wander_deviation_spread, traits.wander
         ),
-        lane_bias=draw.between(usual.lane_bias, spread.lane_bias_spread, -0.2, 0.2),
+        lane_bias=_between(
+            usual.lane_bias, spread.lane_bias_spread, traits.lane_bias, -0.2, 0.2
+        ),
     )
 
 
-def _decision(draw: _Draw, spread: PopulationParameters) -> DecisionParameters:
+def _decision(traits: Traits, spread: PopulationParameters) -> DecisionParameters:
     usual = DecisionParameters()
+    room = _positive(1.0, spread.headway_spread, traits.headway)
     return usual._replace(
-        change_duration=draw.positive(usual.change_duration, spread.duration_spread),
-        headway=draw.positive(usual.headway, spread.headway_spread),
-        return_distance=draw.positive(usual.return_distance, spread.headway_spread),
+        change_duration=_positive(
+            usual.change_duration, spread.duration_spread, traits.duration
+        ),
+        headway=usual.headway * room,
+        return_headway=usual.return_headway * room,
+        patience=_positive(usual.patience, spread.patience_spread, traits.patience),
+        shoulder_share=_between(
+            usual.shoulder_share,
+            spread.shoulder_spread,
+            traits.shoulder,
+            0.0,
+            usual.glance_share,
+        ),
     )
 
 
-def _gaze(draw: _Draw, spread: PopulationParameters) -> GazeParameters:
+def _gaze(traits: Traits, spread: PopulationParameters) -> GazeParameters:
     usual = GazeParameters()
     return usual._replace(
-        amplitude=draw.positive(usual.amplitude, spread.glance_spread)
+        amplitude=_positive(usual.amplitude, spread.glance_spread, traits.glance)
     )
 
 
 def _longitudinal(
-    draw: _Draw, spread: PopulationParameters, speed: Real
+    traits: Traits, spread: PopulationParameters, speed: Real
 ) -> LongitudinalParameters:
     usual = LongitudinalParameters()
-    faster = draw.between(
-        usual.overtaking_speed, spread.overtaking_speed_spread, 0.0, 5.0
+    faster = _between(
+        usual.overtaking_speed,
+        spread.overtaking_speed_spread,
+        traits.overtaking_speed,
+        0.0,
+        5.0,
     )
-    preferred = draw.between(
-        speed, spread.preferred_speed_spread, 0.8 * speed, 1.2 * speed
+    preferred = _between(
+        speed,
+        spread.preferred_speed_spread,
+        traits.preferred_speed,
+        0.8 * speed,
+        1.2 * speed,
     )
     return usual._replace(preferred_speed=preferred, overtaking_speed=faster)
 

@@ -2,8 +2,10 @@
 
 Saleh, Chevrel, Mars, Lafay and Claveau (2013), Human-like cybernetic driver model for
 lane keeping: anticipation from the far point, compensation from the near point
-through a lead-lag and a processing delay. The far angle is the direction of the
-wanted path there; on a straight road it is the vanishing point of their model.
+through a lead-lag, and a processing delay on their sum. The far angle is the direction
+of the wanted path there; on a straight road it is the vanishing point of their model.
+What the driver steers ahead for the own path's curvature is planned, not seen: it has
+no delay.
 """
 
 from __future__ import annotations
@@ -12,8 +14,7 @@ from typing import NamedTuple
 
 from costeer.base import array as xp
 from costeer.base.array import Real, compiled
-from costeer.base.filters import coloured_noise, low_pass
-from costeer.drivers.tracking import Aim
+from costeer.base.filters import coloured_noise, low_pass, pade_delay
 from costeer.plant.parameters import CarParameters, steady_steering_wheel_angle
 from costeer.sensing.measurement import Measurement
 
@@ -49,16 +50,28 @@ class VisionParameters(NamedTuple):
     near_time: Real = 0.4
     anticipation_time: Real = 0.35
     curvature_gain: Real = 0.9
-    near_noise: Real = 0.009
-    motor_noise: Real = 0.011
+    near_noise: Real = 0.008
+    motor_noise: Real = 0.0095
     noise_time: Real = 0.35
+
+
+class VisionNoise(NamedTuple):
+    """Random numbers of one control step, standard normal.
+
+    Attributes:
+        near: For the seen near angle.
+        motor: For the intended angle.
+    """
+
+    near: Real
+    motor: Real
 
 
 class VisionState(NamedTuple):
     """What vision remembers.
 
     Attributes:
-        delayed: State of the delay [rad].
+        delayed: Memory of the delay [rad].
         lagged: State of the lead-lag [rad].
         near_noise: Of the seen near angle [rad].
         motor_noise: Of the intended angle [rad].
@@ -90,81 +103,75 @@ def near_angle(measurement: Measurement, near_position: Real, distance: Real) ->
 
 
 @compiled
-def intended_angle(
-    parameters: VisionParameters,
-    car: CarParameters,
-    measurement: Measurement,
-    aim: Aim,
-    compensation: Real,
-) -> Real:
-    """Steering-wheel angle that the driver wants [rad].
-
-    Args:
-        parameters: Gains.
-        car: Known by experience: angle for a curvature.
-        measurement: Speed and direction of the car.
-        aim: The wanted path.
-        compensation: Near angle after delay and lead-lag [rad].
-    """
-    speed = xp.maximum(measurement.longitudinal_velocity, 1.0)
-    far = xp.atan(aim.far_slope) - measurement.yaw_angle
-    ahead = steady_steering_wheel_angle(car, speed, aim.far_curvature)
-    return (
-        parameters.far_gain * far
-        + parameters.near_gain / speed * compensation
-        + parameters.curvature_gain * ahead
-    )
+def far_angle(measurement: Measurement, slope: Real) -> Real:
+    """Angle from the car's direction to the wanted path's at the far point [rad]."""
+    return xp.atan(slope) - measurement.yaw_angle
 
 
 @compiled
-def delayed_angle(state: Real, angle: Real, delay: Real, dt: Real) -> tuple[Real, Real]:
-    """First-order Pade approximation of a delay, as Saleh et al. use it.
+def compensation(parameters: VisionParameters, lagged: Real, angle: Real) -> Real:
+    """Near angle through the lead-lag (1 + T_L s) / (1 + T_I s) [rad].
 
     Args:
-        state: Of the approximation [rad].
-        angle: Seen now [rad].
-        delay: [s].
-        dt: Control step [s].
-
-    Returns:
-        New state [rad] and delayed angle [rad].
+        parameters: T_L and T_I.
+        lagged: The angle through 1 / (1 + T_I s) [rad].
+        angle: Now [rad].
     """
-    new_state = low_pass(state, angle, dt, delay / 2.0)
-    return new_state, 2.0 * new_state - angle
+    lead = parameters.lead_time / parameters.lag_time
+    return lagged + lead * (angle - lagged)
+
+
+@compiled
+def planned_angle(
+    parameters: VisionParameters, car: CarParameters, speed: Real, curvature: Real
+) -> Real:
+    """Steering-wheel angle that is steered ahead for the own path [rad].
+
+    Args:
+        parameters: Share of it that is.
+        car: Known by experience: angle for a curvature.
+        speed: [m/s].
+        curvature: Of the wanted path at the far point [1/m].
+    """
+    ahead = steady_steering_wheel_angle(car, speed, curvature)
+    return parameters.curvature_gain * ahead
 
 
 @compiled
 def step(
     parameters: VisionParameters,
     state: VisionState,
-    angle: Real,
-    near_normal: Real,
-    motor_normal: Real,
+    far: Real,
+    near: Real,
+    speed: Real,
+    noise: VisionNoise,
     dt: Real,
 ) -> tuple[VisionState, Real]:
-    """Process the near angle; return the state and the compensation [rad].
+    """Process what is seen; return the state and the angle it asks for [rad].
 
     Args:
-        parameters: Delay, lead-lag, noise.
+        parameters: Gains, lead-lag, delay, noise.
         state: Of vision.
-        angle: To the near point [rad].
-        near_normal: Standard normal draw for what is seen.
-        motor_normal: Standard normal draw for what is intended.
+        far: Angle to the far point [rad].
+        near: Angle to the near point [rad].
+        speed: [m/s].
+        noise: Draws of this step.
         dt: Control step [s].
     """
     correlation = parameters.noise_time
     near_noise = coloured_noise(
-        state.near_noise, near_normal, parameters.near_noise, dt, correlation
+        state.near_noise, noise.near, parameters.near_noise, dt, correlation
     )
     motor_noise = coloured_noise(
-        state.motor_noise, motor_normal, parameters.motor_noise, dt, correlation
+        state.motor_noise, noise.motor, parameters.motor_noise, dt, correlation
     )
-    delayed, seen = delayed_angle(
-        state.delayed, angle + near_noise, parameters.delay, dt
-    )
+    seen = near + near_noise
     lagged = low_pass(state.lagged, seen, dt, parameters.lag_time)
-    lead = parameters.lead_time / parameters.lag_time
+    asked = parameters.far_gain * far + parameters.near_gain / speed * compensation(
+        parameters, lagged, seen
+    )
+    delayed, angle = pade_delay(state.delayed, asked, parameters.delay, dt)
     new_state = VisionState(
         delayed=delayed, lagged=lagged, near_noise=near_noise, motor_noise=motor_noise
     )
-    return new_state, lagged + lead * (seen - lagged)
+    return new_state, angle + motor_noise

@@ -27,7 +27,7 @@ from costeer.plant.road import cruising_lane, lane_centre
 from costeer.plant.steering import ColumnState
 from costeer.plant.vehicle import VehicleState, resistance
 from costeer.plant.world import Inputs, WorldState
-from costeer.sensing.sensors import measure
+from costeer.sensing.sensors import initial_tracker, measure
 
 STATES = (
     "lateral_position",
@@ -126,7 +126,7 @@ def _instructed(
     if not compensated:
         method = method._replace(column=_without_friction(method.column))
     measurement = measure(
-        parameters.car, road, _world(parameters, states), 0.0, math.nan
+        parameters.car, road, _world(parameters, states), 0.0, initial_tracker()
     )
     keeping = trajectory.initial_state(road, cruising_lane(road))
     target = trajectory.target(keeping, road, measurement)

@@ -76,10 +76,19 @@ def intention_sample(measurement: Measurement) -> IntentionSample:
 
 
 @compiled
-def scripted_probability(state: LoopState, horizon: Real) -> Real:
-    """1 while the driver's own plan crosses the line within `horizon` [s], else 0."""
-    remaining = time_to_crossing(state.driver.decision)
-    return xp.select(planned_to_cross(remaining, horizon), 1.0, 0.0)
+def scripted_probability(
+    parameters: LoopParameters, state: LoopState, horizon: Real
+) -> Real:
+    """1 while the driver's own plan crosses the line within `horizon` [s], else 0.
+
+    A system that follows the plan begins when the driver does, half the planned
+    duration before the crossing.
+    """
+    plan = state.driver.decision
+    begins = xp.select(
+        parameters.follows_plan > 0.5, plan.change_duration / 2.0, horizon
+    )
+    return xp.select(planned_to_cross(time_to_crossing(plan), begins), 1.0, 0.0)
 
 
 @compiled
@@ -102,10 +111,10 @@ def tick(
     noise: DriverNoise,
 ) -> tuple[LoopState, Row]:
     """One control step with its sample, its verdict and its row."""
-    measurement = sense(parameters, state, noise)
+    measurement = sense(parameters, state)
     probability = math.nan
     if script.intention == INTENTION_SCRIPTED:
-        probability = scripted_probability(state, script.horizon)
+        probability = scripted_probability(parameters, state, script.horizon)
     if script.intention == INTENTION_NETWORK:
         probability = advance(weights, memory, intention_sample(measurement))
     asked = requested(script.trigger_times, state.time)

@@ -70,6 +70,8 @@ class TrialSetup(NamedTuple):
         look_ahead: Take the path at the preview point, the other reading of Fig. 4.
         inconsistency_threshold: δ [W].
         prediction_horizon: Of the scripted intention, g of Eq. (2) [s].
+        follows_plan: The system's lane changes begin and last as this driver plans
+            each one; for pilot runs in which nobody disagrees.
     """
 
     participant: int = 1
@@ -91,6 +93,7 @@ class TrialSetup(NamedTuple):
     look_ahead: bool = False
     inconsistency_threshold: Real = ConsistencyParameters().inconsistency_threshold
     prediction_horizon: Real = PREDICTION_HORIZON
+    follows_plan: bool = False
 
 
 SLOWEST = 12.0
@@ -225,5 +228,6 @@ def loop_parameters(setup: TrialSetup) -> LoopParameters:
             lateral_offset=setup.initial_offset,
             events=1.0 if setup.events else 0.0,
         ),
+        follows_plan=1.0 if setup.follows_plan else 0.0,
         plant_steps=setup.plant_steps,
     )

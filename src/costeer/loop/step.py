@@ -14,8 +14,9 @@ from costeer.base.array import Flag, Real, compiled, repeat
 from costeer.controller import step as controller
 from costeer.controller.signals import Signals
 from costeer.controller.step import ControllerParameters, ControllerState
-from costeer.drivers import driver
-from costeer.drivers.arm import ArmCommand, ArmParameters, active_torque, driver_torque
+from costeer.controller.trajectory import TrajectoryParameters
+from costeer.drivers import arm, driver
+from costeer.drivers.arm import ArmCommand, ArmParameters, ArmState
 from costeer.drivers.driver import (
     Action,
     DriverNoise,
@@ -33,7 +34,14 @@ from costeer.plant.traffic import TrafficParameters
 from costeer.plant.vehicle import drive_command
 from costeer.plant.world import Inputs, WorldState
 from costeer.sensing.measurement import Measurement
-from costeer.sensing.sensors import SensorParameters, measure, measured_head_yaw
+from costeer.sensing.sensors import (
+    HeadTracker,
+    SensorParameters,
+    TrackerNoise,
+    initial_tracker,
+    measure,
+    track_head,
+)
 
 DT = 1.0 / 60.0
 """Control step [s]."""
@@ -65,6 +73,9 @@ class LoopParameters(NamedTuple):
         controller: Of the method [SI units]. Source: controller/step.py.
         driver: Who holds the wheel [SI units]. Source: drivers/driver.py.
         start: How the trial begins [SI units]. Source: this file.
+        follows_plan: 1 if the system's lane changes begin and last as the driver plans
+            this one, 0 if as the method says [-]. Source: assumed, for the pilot runs
+            in which nobody disagrees.
         plant_steps: Plant steps in a control step [-]. Source: assumed, 8 make 480
             Hz.
     """
@@ -77,6 +88,7 @@ class LoopParameters(NamedTuple):
     controller: ControllerParameters = ControllerParameters()
     driver: DriverParameters = DriverParameters()
     start: StartParameters = StartParameters()
+    follows_plan: Real = 0.0
     plant_steps: int = 8
 
 
@@ -88,6 +100,7 @@ class LoopState(NamedTuple):
         events: Leader and event zone.
         controller: Of the method.
         driver: Who holds the wheel.
+        head: What the tracker says of the head.
         torque_command: Computed at the step before, acts in this one [N·m].
         time: Since the trial began [s].
     """
@@ -96,6 +109,7 @@ class LoopState(NamedTuple):
     events: EventState
     controller: ControllerState
     driver: DriverState
+    head: HeadTracker
     torque_command: Real
     time: Real
 
@@ -133,36 +147,30 @@ def initial_state(parameters: LoopParameters) -> LoopState:
         events=initial_events(),
         controller=controller.initial_state(parameters.road, lane),
         driver=driver.initial_state(centre + parameters.driver.tracking.lane_bias),
+        head=initial_tracker(),
         torque_command=0.0,
         time=0.0,
     )
 
 
 @compiled
-def sense(
-    parameters: LoopParameters, state: LoopState, noise: DriverNoise
-) -> Measurement:
+def sense(parameters: LoopParameters, state: LoopState) -> Measurement:
     """This step's sample of everything that is measured."""
-    head = head_yaw(parameters.driver.gaze, state.driver.gaze)
-    hands = driver_torque(
-        parameters.driver.arm,
-        state.driver.arm,
-        state.world.column.steering_wheel_rate,
-    )
     return measure(
         parameters.car,
         parameters.road,
         state.world,
-        hands,
-        measured_head_yaw(parameters.sensors, head, noise.head_tracker),
+        state.driver.arm.torque,
+        state.head,
     )
 
 
 class _Motion(NamedTuple):
-    """What the plant steps carry on: the world and the muscle torque [N·m]."""
+    """What the plant steps carry on: world, arms, sum of the muscles' torque [N·m]."""
 
     world: WorldState
-    arm: Real
+    arm: ArmState
+    muscles: Real
 
 
 class _Held(NamedTuple):
@@ -180,26 +188,47 @@ class _Held(NamedTuple):
 @compiled
 def _plant_step(motion: _Motion, held: _Held) -> _Motion:
     """Arms and world one plant step later."""
-    wheel = motion.world.column
-    arm = active_torque(
-        held.arm, motion.arm, held.command, wheel.steering_wheel_angle, held.dt
-    )
+    angle = motion.world.column.steering_wheel_angle
+    moved_arm = arm.step(held.arm, motion.arm, held.command, angle, held.dt)
+    muscles = arm.muscle_torque(held.arm, moved_arm, held.command, angle)
     inputs = Inputs(
-        driver_torque=driver_torque(held.arm, arm, wheel.steering_wheel_rate),
+        driver_torque=muscles,
         torque_command=held.torque_command,
         drive_command=held.drive_command,
     )
     moved = world.step(held.car, held.column, motion.world, inputs, held.dt)
-    return _Motion(world=moved, arm=arm)
+    return _Motion(world=moved, arm=moved_arm, muscles=motion.muscles + muscles)
 
 
 @compiled
-def move(parameters: LoopParameters, state: LoopState, action: Action) -> _Motion:
-    """Run the plant through one control step."""
+def _felt_torque(
+    parameters: LoopParameters, before: WorldState, after: _Motion, action: Action
+) -> Real:
+    """Mean torque between hands and wheel over a control step [N·m]."""
+    old, new = before.column, after.world.column
+    return arm.hand_torque(
+        parameters.driver.arm,
+        after.muscles / parameters.plant_steps,
+        action.arm.stiffening,
+        (new.steering_wheel_angle - old.steering_wheel_angle) / DT,
+        (new.steering_wheel_rate - old.steering_wheel_rate) / DT,
+    )
+
+
+@compiled
+def move(
+    parameters: LoopParameters, state: LoopState, action: Action
+) -> tuple[WorldState, ArmState]:
+    """Run plant and arms through one control step.
+
+    The arms move with the wheel, so their inertia and damping are part of the column
+    while the hands hold it.
+    """
+    hands = parameters.driver.arm
     held = _Held(
         car=parameters.car,
-        column=parameters.column,
-        arm=parameters.driver.arm,
+        column=arm.held_column(hands, parameters.column, action.arm.stiffening),
+        arm=hands,
         command=action.arm,
         torque_command=state.torque_command,
         drive_command=drive_command(
@@ -207,16 +236,24 @@ def move(parameters: LoopParameters, state: LoopState, action: Action) -> _Motio
         ),
         dt=DT / parameters.plant_steps,
     )
-    motion = _Motion(world=state.world, arm=state.driver.arm)
-    return repeat(_plant_step, parameters.plant_steps, motion, held)
+    start = _Motion(world=state.world, arm=state.driver.arm, muscles=0.0)
+    motion = repeat(_plant_step, parameters.plant_steps, start, held)
+    moved = motion.arm
+    return motion.world, ArmState(
+        equilibrium=moved.equilibrium,
+        delayed=moved.delayed,
+        reflex=moved.reflex,
+        relief=moved.relief,
+        torque=_felt_torque(parameters, state.world, motion, action),
+    )
 
 
 @compiled
-def _with_arm(state: DriverState, arm: Real) -> DriverState:
-    """The driver with another muscle torque [N·m]."""
+def _with_arm(state: DriverState, moved: ArmState) -> DriverState:
+    """The driver with arms that have moved."""
     return DriverState(
         vision=state.vision,
-        arm=arm,
+        arm=moved,
         reliance=state.reliance,
         tracking=state.tracking,
         decision=state.decision,
@@ -245,6 +282,29 @@ def drive(
 
 
 @compiled
+def _method(parameters: LoopParameters, state: LoopState) -> ControllerParameters:
+    """The controller, with the driver's own duration if it follows the plan."""
+    method = parameters.controller
+    own = state.driver.decision.change_duration
+    duration = xp.select(
+        parameters.follows_plan > 0.5, own, method.trajectory.change_duration
+    )
+    return ControllerParameters(
+        car=method.car,
+        column=method.column,
+        road=method.road,
+        inference=method.inference,
+        trajectory=TrajectoryParameters(change_duration=duration),
+        preview=method.preview,
+        guidance=method.guidance,
+        consistency=method.consistency,
+        strength=method.strength,
+        replanning=method.replanning,
+        actuation=method.actuation,
+    )
+
+
+@compiled
 def step(
     parameters: LoopParameters,
     state: LoopState,
@@ -264,7 +324,7 @@ def step(
         noise: Random numbers of this step.
     """
     controller_state, signals = controller.step(
-        parameters.controller,
+        _method(parameters, state),
         state.controller,
         measurement,
         crossing_probability,
@@ -272,7 +332,7 @@ def step(
         DT,
     )
     driver_state, action = drive(parameters, state, measurement, noise)
-    motion = move(parameters, state, action)
+    moved_world, moved_arm = move(parameters, state, action)
     sample = Sample(
         time=state.time,
         measurement=measurement,
@@ -291,10 +351,17 @@ def step(
         DT,
     )
     return LoopState(
-        world=motion.world,
+        world=moved_world,
         events=events,
         controller=controller_state,
-        driver=_with_arm(driver_state, motion.arm),
+        driver=_with_arm(driver_state, moved_arm),
+        head=track_head(
+            parameters.sensors,
+            state.head,
+            head_yaw(parameters.driver.gaze, driver_state.gaze),
+            TrackerNoise(normal=noise.head_tracker, uniform=noise.tracker_uniform),
+            DT,
+        ),
         torque_command=signals.applied_torque,
         time=state.time + DT,
     ), sample

@@ -1,8 +1,8 @@
 """60 Hz sensors: the world's state becomes a measurement.
 
 The simulator's own signals are exact, as in the paper's driving simulator; only the
-head tracker is noisy. Delay: a torque computed from a measurement acts one control
-step later (loop/step.py).
+head tracker is noisy and loses the face now and then. Delay: a torque computed from a
+measurement acts one control step later (loop/step.py).
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from costeer.base import array as xp
-from costeer.base.array import Real, compiled
+from costeer.base.array import Flag, Real, compiled
 from costeer.plant.parameters import CarParameters, RoadParameters
 from costeer.plant.road import adjacent_side, distance_to_adjacent_lane, lane_at
 from costeer.plant.vehicle import (
@@ -31,9 +31,50 @@ class SensorParameters(NamedTuple):
         head_yaw_deviation: Standard deviation of the head tracker's noise [-].
             Source: assumed, 1.0 deg of 90, the mean error measured for the webcam
             tracker within 30 deg.
+        loss_rate: How often the tracker loses a face that looks ahead [1/s]. Source:
+            assumed, a lab's tracker.
+        turned_loss_rate: The same for a head that is turned far [1/s]. Source:
+            assumed; face trackers need both eyes.
+        turned_yaw: Head yaw from which a head is turned far [-]. Source: assumed, 50
+            deg of 90.
+        loss_time: Mean time until the face is found again [s]. Source: assumed.
     """
 
     head_yaw_deviation: Real = 1.0 / 90.0
+    loss_rate: Real = 0.01
+    turned_loss_rate: Real = 0.3
+    turned_yaw: Real = 50.0 / 90.0
+    loss_time: Real = 0.3
+
+
+class HeadTracker(NamedTuple):
+    """What the head tracker says.
+
+    Attributes:
+        head_yaw: In [-1, 1]; the last one seen while the face is lost [-].
+        valid: Whether it sees the face.
+    """
+
+    head_yaw: Real
+    valid: Flag
+
+
+class TrackerNoise(NamedTuple):
+    """Random numbers of one control step.
+
+    Attributes:
+        normal: Standard normal, error of the angle.
+        uniform: In [0, 1), whether the face is lost or found.
+    """
+
+    normal: Real
+    uniform: Real
+
+
+@compiled
+def initial_tracker() -> HeadTracker:
+    """A face that looks ahead."""
+    return HeadTracker(head_yaw=0.0, valid=True)
 
 
 @compiled
@@ -51,12 +92,38 @@ def measured_head_yaw(
 
 
 @compiled
+def track_head(
+    sensors: SensorParameters,
+    state: HeadTracker,
+    head_yaw: Real,
+    noise: TrackerNoise,
+    dt: Real,
+) -> HeadTracker:
+    """What the tracker says one step later; a lost face keeps its last angle.
+
+    Args:
+        sensors: Noise and losses.
+        state: What it said before.
+        head_yaw: The driver's [-].
+        noise: Draws of this step.
+        dt: Control step [s].
+    """
+    far = (head_yaw > sensors.turned_yaw) | (head_yaw < -sensors.turned_yaw)
+    rate = xp.select(far, sensors.turned_loss_rate, sensors.loss_rate)
+    kept = noise.uniform >= dt * rate
+    found = noise.uniform < dt / sensors.loss_time
+    valid = xp.select(state.valid, kept, found)
+    seen = measured_head_yaw(sensors, head_yaw, noise.normal)
+    return HeadTracker(head_yaw=xp.select(valid, seen, state.head_yaw), valid=valid)
+
+
+@compiled
 def measure(
     car: CarParameters,
     road: RoadParameters,
     world: WorldState,
     driver_torque: Real,
-    head_yaw: Real,
+    head: HeadTracker,
 ) -> Measurement:
     """One sample of all sensors.
 
@@ -65,7 +132,7 @@ def measure(
         road: Its lanes.
         world: As it is now.
         driver_torque: At the wheel now [N·m].
-        head_yaw: As the tracker sees it [-].
+        head: What the tracker says; an angle that is not finite is not valid.
     """
     vehicle, wheel = world.vehicle, world.column
     road_wheel_angle = wheel.steering_wheel_angle / car.steering_ratio
@@ -97,8 +164,8 @@ def measure(
             road_wheel_angle,
         ),
         driver_torque=driver_torque,
-        head_yaw=head_yaw,
-        head_yaw_valid=xp.isfinite(head_yaw),
+        head_yaw=head.head_yaw,
+        head_yaw_valid=head.valid & xp.isfinite(head.head_yaw),
         lane=lane,
         side=side,
         distance_to_adjacent_lane=distance_to_adjacent_lane(

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from costeer.base.array import Real
 from costeer.controller.actuation import STRONG, WEAK
-from costeer.loop.scenario import PILOT_SEED, TrialSetup, trial_driver
+from costeer.loop.scenario import PILOT_SEED, TrialSetup
 from costeer.loop.trial import simulate_trial
 from costeer.study.jobs import JobsStoppedError, run_jobs
 
@@ -45,9 +45,8 @@ class PilotResult(NamedTuple):
 def agreeing_setups(participant: int) -> list[TrialSetup]:
     """Trials of one pilot driver in which driver and system want the same.
 
-    Lane keeping without leaders, and lane changes whose path has the driver's median
-    planned duration and starts half of it before the planned crossing, strong and
-    weak. Single changes scatter about that median (decision 6).
+    Lane keeping without leaders, and lane changes whose path begins when the driver
+    does and has the duration that the driver plans for this one, strong and weak.
     """
     setups = []
     for strength in (STRONG, WEAK):
@@ -60,12 +59,10 @@ def agreeing_setups(participant: int) -> list[TrialSetup]:
             events=False,
             inconsistency_threshold=NEVER,
         )
-        duration = trial_driver(keeping).decision.change_duration
         changing = keeping._replace(
             condition=f"pilot-changing-{strength}",
-            change_duration=duration,
             intention="scripted",
-            prediction_horizon=duration / 2.0,
+            follows_plan=True,
             events=True,
         )
         setups += [keeping, changing]
