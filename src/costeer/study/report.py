@@ -7,13 +7,12 @@ from pathlib import Path
 from typing import NamedTuple
 
 from costeer.study.figures.catalogue import FIGURE_NAMES, draw_figures
-from costeer.study.figures.exhibit import Exhibit
-from costeer.study.figures.style import COLUMN_WIDTH_MM, MM_PER_INCH, styled, svg_text
+from costeer.study.figures.style import styled
 from costeer.study.folder import write_text
 from costeer.study.material import StudyMaterial, read_material
 from costeer.study.outcome import DroppedRow, EffectRow, PairRow, SummaryRow
+from costeer.study.reporting.frame import Picture, picture
 from costeer.study.reporting.page import render
-from costeer.study.reporting.sections import Picture
 from costeer.study.trial_tables import write_csv
 
 FIGURES = "figures"
@@ -88,22 +87,12 @@ def _write_figures(
     with styled():
         for exhibit in draw_figures(material):
             tell(f"figure {exhibit.name}")
-            pictures.append(_picture(exhibit))
-    for picture in pictures:
-        if picture.svg:
-            write_text(folder / f"{picture.exhibit.name}.svg", picture.svg)
+            pictures.append(picture(exhibit))
+    for each in pictures:
+        if each.svg:
+            write_text(folder / f"{each.exhibit.name}.svg", each.svg)
     drawn = {each.exhibit.name for each in pictures if each.svg}
     for name in FIGURE_NAMES:
         if name not in drawn:
             (folder / f"{name}.svg").unlink(missing_ok=True)
     return pictures
-
-
-def _picture(exhibit: Exhibit) -> Picture:
-    """The figure as text; the drawing itself is let go, it is large."""
-    if exhibit.figure is None:
-        return Picture(exhibit, "", half=False)
-    svg = svg_text(exhibit.figure, exhibit.name, exhibit.title)
-    width_mm = float(exhibit.figure.get_figwidth()) * MM_PER_INCH
-    words = exhibit._replace(figure=None)
-    return Picture(words, svg, half=width_mm <= COLUMN_WIDTH_MM + 1.0)

@@ -3,45 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import NamedTuple
 
-from costeer.study.figures.exhibit import Exhibit
 from costeer.study.material import StudyMaterial, is_virtual
 from costeer.study.quantities import BY_STRENGTH, WORKLOAD
 from costeer.study.reporting import event_tables, making, statistics_tables, tables
 from costeer.study.reporting.comparisons import shown_quantities
+from costeer.study.reporting.frame import Picture, Section
 from costeer.study.reporting.network import network_table
 from costeer.study.reporting.tables import Table
-
-
-class Picture(NamedTuple):
-    """A figure as it stands on the page.
-
-    Attributes:
-        exhibit: Its words.
-        svg: Its drawing; empty if there is none.
-        half: Whether two stand side by side.
-    """
-
-    exhibit: Exhibit
-    svg: str
-    half: bool
-
-
-class Section(NamedTuple):
-    """A section of the page.
-
-    Attributes:
-        name: Anchor.
-        title: Heading.
-        text: Paragraphs before the items.
-        items: Tables and pictures.
-    """
-
-    name: str
-    title: str
-    text: tuple[str, ...]
-    items: tuple[Table | Picture, ...]
 
 
 def page_sections(
