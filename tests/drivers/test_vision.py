@@ -1,138 +1,188 @@
-"""Eyes: delay, lead-lag, gains and noise of the near and far point."""
+"""Eyes: gains, lead-lag, delay of what is seen, and noise."""
 
 from __future__ import annotations
 
 import cmath
 import math
-from collections.abc import Callable
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from costeer.drivers import vision
-from costeer.drivers.tracking import Aim
-from costeer.drivers.vision import VisionParameters, VisionState, delayed_angle
+from costeer.drivers.vision import VisionNoise, VisionParameters
 from costeer.plant.parameters import CarParameters, steady_steering_wheel_angle
 from tests.drivers.samples import DT, SPEED, driving
 
-DELAY = VisionParameters().delay
-AT_REST = VisionState(delayed=0.0, lagged=0.0, near_noise=0.0, motor_noise=0.0)
+PARAMETERS = VisionParameters()
+QUIET = VisionNoise(near=0.0, motor=0.0)
+ANGLES = st.floats(-0.3, 0.3)
 
 
-def impulse_response(
-    step: Callable[[float, float], tuple[float, float]], num_steps: int
+def asked(
+    far: NDArray[np.float64],
+    near: NDArray[np.float64],
+    parameters: VisionParameters = PARAMETERS,
 ) -> NDArray[np.float64]:
-    """Answer of `state, output = step(state, input)` to a single 1."""
-    state, answers = 0.0, []
-    for k in range(num_steps):
-        state, output = step(state, 1.0 if k == 0 else 0.0)
-        answers.append(output)
+    """Angles that vision asks for, from far and near angles, without noise."""
+    state, answers = vision.initial_state(), []
+    for ahead, beside in zip(far.tolist(), near.tolist(), strict=True):
+        state, answer = vision.step(parameters, state, ahead, beside, SPEED, QUIET, DT)
+        answers.append(answer)
     return np.array(answers)
 
 
-def gain_at(response: NDArray[np.float64], frequency: float, dt: float) -> complex:
-    """Transfer function at a frequency [rad/s], from an impulse response."""
-    turns = np.exp(-1j * frequency * dt * np.arange(response.size))
+def gain_at(response: NDArray[np.float64], frequency: float) -> complex:
+    """Transfer function at a frequency [Hz], from an impulse response."""
+    turns = np.exp(-2j * math.pi * frequency * DT * np.arange(response.size))
     return complex(response @ turns)
 
 
-def delay_response(dt: float) -> NDArray[np.float64]:
-    steps = round(20.0 * DELAY / dt)
-    return impulse_response(
-        lambda state, angle: delayed_angle(state, angle, DELAY, dt), steps
-    )
+def single(seconds: float) -> NDArray[np.float64]:
+    """A 1, then zeros."""
+    values = np.zeros(round(seconds / DT))
+    values[0] = 1.0
+    return values
 
 
-def group_delay(dt: float) -> float:
-    """Delay of slow signals [s]."""
-    frequency = 1e-3
-    return -cmath.phase(gain_at(delay_response(dt), frequency, dt)) / frequency
+def far_gain(frequency: float, parameters: VisionParameters = PARAMETERS) -> complex:
+    """From the far angle to the asked one."""
+    one = single(10.0)
+    return gain_at(asked(one, 0.0 * one, parameters), frequency)
 
 
-def test_delay_lets_a_constant_through_unchanged() -> None:
-    # What is left of the approximation's state after 20 delays: exp(-40).
-    assert gain_at(delay_response(DT), 0.0, DT) == pytest.approx(1.0, abs=1e-12)
+def near_gain(frequency: float, parameters: VisionParameters = PARAMETERS) -> complex:
+    """From the near angle to the asked one; 30 s are 30 times the lag of 1 s."""
+    one = single(30.0)
+    return gain_at(asked(0.0 * one, one, parameters), frequency)
 
 
-def test_delay_of_slow_signals_approaches_its_parameter_as_steps_shrink() -> None:
-    # An input held over the step is half a step early: T - dt + O(dt²) in all.
-    for dt in (DT / 10.0, DT / 20.0, DT / 40.0):
-        assert group_delay(dt) == pytest.approx(DELAY - dt, abs=dt)
-    assert group_delay(DT / 400.0) == pytest.approx(DELAY, abs=1e-4)
-
-
-def test_delay_at_60_hz_is_26_ms_by_the_closed_form() -> None:
-    # The frozen population was calibrated with this discretisation: the half step
-    # by which a held input is early counts twice in 2/(1 + sT/2) - 1. The command to
-    # the arms, held over a control step, adds 8 ms: 34 ms in all.
-    kept = math.exp(-2.0 * DT / DELAY)
-    assert group_delay(DT) == pytest.approx(2.0 * kept / (1.0 - kept) * DT, rel=1e-4)
-    assert group_delay(DT) == pytest.approx(0.0256, abs=1e-4)
-
-
-def test_delay_has_unit_gain_below_one_hertz() -> None:
-    # Padé's all-pass, sampled: its gain falls with the square of the frequency.
-    gains = [abs(gain_at(delay_response(DT), 2.0 * math.pi * f, DT)) for f in (0.3, 1)]
-    assert gains == pytest.approx([1.0, 1.0], abs=0.01)
-
-
-def lead_lag(angle: float, seconds: float) -> list[float]:
-    """Compensation after a step of the near angle, without noise."""
-    state, answers = AT_REST, []
-    quiet = VisionParameters(delay=1e-6)
-    for _ in range(round(seconds / DT)):
-        state, compensation = vision.step(quiet, state, angle, 0.0, 0.0, DT)
-        answers.append(compensation)
-    return answers
-
-
-def test_compensation_starts_at_lead_over_lag_and_settles_to_the_angle() -> None:
-    parameters = VisionParameters()
-    answers = lead_lag(0.01, 12.0)
-    # One control step of the lag is in the first answer: exp(-dt / T_I) of the jump.
-    lead = parameters.lead_time / parameters.lag_time
-    kept = math.exp(-DT / parameters.lag_time)
-    assert answers[0] == pytest.approx(0.01 * (1.0 + (lead - 1.0) * kept), rel=1e-9)
-    assert answers[-1] == pytest.approx(0.01, rel=1e-4)  # exp(-12)
-
-
-def test_seen_noise_settles_to_its_deviation_and_correlation() -> None:
-    state, seen = AT_REST, []
-    normals = np.random.default_rng(1).normal(size=(120_000, 2))
-    parameters = VisionParameters()
-    for near, motor in normals:
-        state, _ = vision.step(parameters, state, 0.0, near, motor, DT)
-        seen.append((state.near_noise, state.motor_noise))
-    near_noise, motor_noise = np.array(seen[600:]).T
-    # 2000 s hold about 2000 / (2 · 0.35) independent values: 1.3 % of a deviation.
-    assert near_noise.std() == pytest.approx(parameters.near_noise, rel=0.06)
-    assert motor_noise.std() == pytest.approx(parameters.motor_noise, rel=0.06)
-    lag = round(parameters.noise_time / DT)
-    kept = np.corrcoef(near_noise[:-lag], near_noise[lag:])[0, 1]
-    assert kept == pytest.approx(math.exp(-lag * DT / parameters.noise_time), abs=0.06)
-
-
-def test_a_car_on_its_aim_keeps_the_wheel_straight() -> None:
-    aim = Aim(near_position=0.0, far_slope=0.0, far_curvature=0.0)
-    assert vision.near_angle(driving(), 0.0, 10.0) == 0.0
-    intended = vision.intended_angle(
-        VisionParameters(), CarParameters(), driving(), aim, 0.0
-    )
-    assert intended == 0.0
+def test_gains_lead_and_delay_are_the_published_ones() -> None:
+    # Saleh et al. (2013), table of the driver's parameters.
+    assert (PARAMETERS.far_gain, PARAMETERS.near_gain) == (3.4, 15.0)
+    assert (PARAMETERS.lag_time, PARAMETERS.delay) == (1.0, 0.04)
+    assert 1.0 <= PARAMETERS.lead_time <= 2.5
 
 
 def test_each_gain_of_the_model_acts_on_its_own_angle() -> None:
-    parameters, car = VisionParameters(), CarParameters()
-    aim = Aim(near_position=0.0, far_slope=0.02, far_curvature=0.001)
-    intended = vision.intended_angle(parameters, car, driving(), aim, 0.005)
+    settled = np.ones(round(30.0 / DT))
+    far = asked(0.02 * settled, 0.0 * settled)[-1]
+    near = asked(0.0 * settled, 0.005 * settled)[-1]
+    both = asked(0.02 * settled, 0.005 * settled)[-1]
+    assert far == pytest.approx(3.4 * 0.02, rel=1e-12)  # exp(-30) of the lag is left
+    assert near == pytest.approx(15.0 / SPEED * 0.005, rel=1e-12)
+    assert both == pytest.approx(far + near, rel=1e-12)
+
+
+def test_what_is_seen_far_ahead_comes_out_40_ms_later() -> None:
+    # The phase of slow signals; (w T)^3 / 12 of the all-pass is 1e-7 of it. The
+    # command to the arms, held over a control step, is no part of the 40 ms.
+    frequency = 3e-3
+    delay = -cmath.phase(far_gain(frequency)) / (2.0 * math.pi * frequency)
+    assert delay == pytest.approx(0.040, rel=1e-6)
+
+
+@pytest.mark.parametrize("frequency", [0.05, 0.3, 1.0, 3.0, 10.0])
+def test_the_delay_acts_on_the_sum_of_far_and_near(frequency: float) -> None:
+    # Saleh et al. delay the sum: with another delay the answers to both angles turn
+    # by the same factor, that of the delay alone.
+    longer = PARAMETERS._replace(delay=0.12)
+    far = far_gain(frequency, longer) / far_gain(frequency)
+    near = near_gain(frequency, longer) / near_gain(frequency)
+    assert near == pytest.approx(far, abs=1e-9)
+    assert abs(far) == pytest.approx(1.0, abs=1e-9)
+    assert abs(far - 1.0) > 2e-2  # the factor is not 1
+
+
+@pytest.mark.parametrize("frequency", [0.02, 0.1, 0.5, 2.0])
+def test_compensation_is_a_lead_lag_of_the_near_angle(frequency: float) -> None:
+    s = 2j * math.pi * frequency
+    lead_lag = (1.0 + PARAMETERS.lead_time * s) / (1.0 + PARAMETERS.lag_time * s)
+    expected = 15.0 / SPEED * lead_lag * cmath.exp(-0.04 * s)
+    # The lag takes the sample of this step for the whole of it: half a step early,
+    # s dt / 2 of the part that lags; the delay is Pade's, (s T)^3 / 12 off.
+    size = abs(expected)
+    allowed = size * (abs(s) * DT / 2.0 + abs(0.04 * s) ** 3 / 12.0) + 1e-9
+    assert abs(near_gain(frequency) - expected) < allowed
+
+
+def test_compensation_starts_at_lead_over_lag_and_settles_to_the_angle() -> None:
+    lead = PARAMETERS.lead_time / PARAMETERS.lag_time
+    assert vision.compensation(PARAMETERS, 0.0, 0.01) == pytest.approx(0.01 * lead)
+    assert vision.compensation(PARAMETERS, 0.01, 0.01) == 0.01
+
+
+def test_a_planned_curvature_is_steered_without_delay() -> None:
+    car = CarParameters()
     ahead = steady_steering_wheel_angle(car, SPEED, 0.001)
-    expected = (
-        3.4 * math.atan(0.02) + 15.0 / SPEED * 0.005 + parameters.curvature_gain * ahead
+    planned = vision.planned_angle(PARAMETERS, car, SPEED, 0.001)
+    assert planned == pytest.approx(PARAMETERS.curvature_gain * ahead, rel=1e-12)
+    slow = PARAMETERS._replace(delay=1.0)
+    assert vision.planned_angle(slow, car, SPEED, 0.001) == planned
+
+
+def noise_of(num_steps: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Seen and intended noise, and asked angles [rad], of eyes on the aim."""
+    state, noises, answers = vision.initial_state(), [], []
+    for near, motor in np.random.default_rng(1).normal(size=(num_steps, 2)).tolist():
+        draws = VisionNoise(near=near, motor=motor)
+        state, answer = vision.step(PARAMETERS, state, 0.0, 0.0, SPEED, draws, DT)
+        noises.append((state.near_noise, state.motor_noise))
+        answers.append(answer)
+    return np.array(noises[600:]).T, np.array(answers[600:])
+
+
+def test_noise_settles_to_its_deviation_and_correlation() -> None:
+    (near_noise, motor_noise), _ = noise_of(120_000)
+    # 2000 s hold about 2000 / (2 · 0.35) independent values: 1.3 % of a deviation.
+    assert near_noise.std() == pytest.approx(PARAMETERS.near_noise, rel=0.06)
+    assert motor_noise.std() == pytest.approx(PARAMETERS.motor_noise, rel=0.06)
+    lag = round(PARAMETERS.noise_time / DT)
+    kept = np.corrcoef(near_noise[:-lag], near_noise[lag:])[0, 1]
+    assert kept == pytest.approx(math.exp(-lag * DT / PARAMETERS.noise_time), abs=0.06)
+
+
+def test_noise_of_the_hand_is_added_after_the_delay() -> None:
+    state, answer = vision.step(
+        PARAMETERS,
+        vision.initial_state(),
+        0.0,
+        0.0,
+        SPEED,
+        VisionNoise(near=0.0, motor=1.0),
+        DT,
     )
-    assert intended == pytest.approx(expected, rel=1e-12)
+    assert answer == state.motor_noise != 0.0
 
 
-def test_a_near_point_to_the_left_is_a_positive_angle() -> None:
+def test_a_car_on_its_aim_keeps_the_wheel_straight() -> None:
+    assert (
+        vision.near_angle(driving(), 0.0, 10.0)
+        == 0.0
+        == vision.far_angle(driving(), 0.0)
+    )
+    nothing = np.zeros(60)
+    assert not asked(nothing, nothing).any()
+
+
+def test_a_point_to_the_left_is_a_positive_angle() -> None:
     assert vision.near_angle(driving(), 0.1, 8.0) == pytest.approx(0.0125, rel=1e-3)
     assert vision.near_angle(driving(yaw_angle=0.01), 0.0, 8.0) == pytest.approx(-0.01)
+    assert vision.far_angle(driving(yaw_angle=0.01), 0.02) == pytest.approx(
+        math.atan(0.02) - 0.01
+    )
+
+
+@given(ANGLES, ANGLES, st.floats(-4.0, 4.0), st.floats(-4.0, 4.0))
+def test_mirrored_angles_ask_for_the_mirrored_wheel(
+    far: float, near: float, seen: float, moved: float
+) -> None:
+    here = there = vision.initial_state()
+    for _ in range(3):
+        noise = VisionNoise(near=seen, motor=moved)
+        mirrored = VisionNoise(near=-seen, motor=-moved)
+        here, left = vision.step(PARAMETERS, here, far, near, SPEED, noise, DT)
+        there, right = vision.step(PARAMETERS, there, -far, -near, SPEED, mirrored, DT)
+        assert left == -right
