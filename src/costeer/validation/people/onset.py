@@ -115,7 +115,7 @@ def steering_onset(
     angles = [state.world.column.steering_wheel_angle]
     for row in noise[:-1]:
         now = DriverNoise(*map(float, row))
-        seen = sense(parameters, state, now)
+        seen = sense(parameters, state)
         state, _ = step(parameters, state, seen, math.nan, False, now)
         angles.append(state.world.column.steering_wheel_angle)
     return correction(-math.copysign(1.0, heading_error) * np.array(angles))

@@ -60,8 +60,8 @@ _CAMERA = (
     "Heads of ten drivers on US roads, right-hand traffic mirrored; few lane changes."
 )
 _DESKTOP = (
-    "A desktop wheel and a car without published ratio, a line that appears suddenly; "
-    "early movements (12 %) are kept."
+    "People must first notice a line that appears suddenly, at a desktop wheel whose "
+    "ratio is not published; virtual drivers watch the road all the time."
 )
 _ONE_CAR = "One instrumented car in Korea, careful drivers, lane lines from a camera."
 _FILM = "Tracking error of the film adds to the drift; dense traffic, 5 to 12 m/s."
@@ -200,7 +200,7 @@ _GLANCES = (
         12.0,
         18.0,
         SHARE,
-        "People may look aside for other reasons than a lane change.",
+        "People look aside for other reasons too: 18 % in the shared half of the set.",
     ),
     Quantity(
         "R12",
