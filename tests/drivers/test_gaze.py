@@ -1,4 +1,4 @@
-"""Head: glances with and without a lane change, and the shape of one."""
+"""Head: glances without a lane change, and the shape of one."""
 
 from __future__ import annotations
 
@@ -92,8 +92,16 @@ def test_15_percent_of_6_s_windows_hold_a_glance_to_one_side() -> None:
 def test_no_glance_starts_by_itself_after_the_line_is_crossed() -> None:
     late = in_phase(CHANGING, looks=True, time_in_phase=4.0, change_duration=6.0)
     early = in_phase(CHANGING, looks=True, time_in_phase=1.0, change_duration=6.0)
-    assert gaze.start_probability(PARAMETERS, late, DT) == 0.0
-    assert gaze.start_probability(PARAMETERS, early, DT) == pytest.approx(0.25 * DT)
+    assert gaze.start_probability(PARAMETERS, late, -1.0, DT) == 0.0
+    assert gaze.start_probability(PARAMETERS, early, -1.0, DT) == pytest.approx(
+        0.25 * DT
+    )
+
+
+def test_a_driver_who_forgets_to_look_has_no_glance_on_the_way() -> None:
+    for phase in (PREPARING, CHANGING):
+        forgot = in_phase(phase, looks=False, change_duration=6.0)
+        assert gaze.start_probability(PARAMETERS, forgot, -1.0, DT) == 0.0
 
 
 def test_a_glance_is_mostly_large_enough_to_be_counted() -> None:
