@@ -85,7 +85,7 @@ def test_progress_counts_every_trial() -> None:
 
 
 def test_a_trial_that_fails_is_told_as_it_is(monkeypatch: pytest.MonkeyPatch) -> None:
-    def interrupted(seed: int, participant: int) -> None:
+    def interrupted(seed: int, participant: int, condition: str) -> None:
         raise KeyboardInterrupt
 
     monkeypatch.setattr(manual, "manual_trial", interrupted)

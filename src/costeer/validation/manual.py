@@ -6,8 +6,7 @@ stays a prediction. Human ranges: docs/decisions/0005-drivers.md.
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -17,52 +16,30 @@ from costeer.base.array import Real
 from costeer.loop.columns import TrialRecord
 from costeer.loop.scenario import TrialSetup
 from costeer.loop.trial import simulate_trial
-from costeer.study.jobs import JobsStoppedError, run_jobs
+from costeer.study.conditions import MANUAL
 from costeer.study.measures import lane_change_rows, trial_row
 from costeer.validation.glances import (
     false_glance_share,
     first_glance_lead,
     glance_before_change,
 )
+from costeer.validation.targets import (
+    MEASURES,
+    TARGETS,
+    TRIALS,
+    Measure,
+    Target,
+    target_statistic,
+)
+from costeer.validation.threads import in_threads
 
 Row = dict[str, Any]  # Any: as the study's tables
 
-
-class Target(NamedTuple):
-    """A human value that the population should meet in manual driving.
-
-    Attributes:
-        name: M1 to M12.
-        quantity: What it is.
-        unit: Of the value as printed.
-        low: Smallest accepted value.
-        high: Largest accepted value.
-    """
-
-    name: str
-    quantity: str
-    unit: str
-    low: Real
-    high: Real
-
+AGAIN = "manual-again"
+"""Condition of a second manual trial: the same drivers, other noise."""
 
 PLANNED_CHANGES = 8
 """Lane changes that the course asks of a driver: four events, out and back."""
-
-TARGETS = (
-    Target("M1", "SDLP, mean over drivers", "m", 0.15, 0.25),
-    Target("M2", "SDLP, sd between drivers", "m", 0.03, 0.05),
-    Target("M3", "steering reversals (3 deg, 0.6 Hz), mean", "1/min", 3.0, 10.0),
-    Target("M4", "lane-change duration (0.1 m/s), median", "s", 5.0, 6.3),
-    Target("M5", "lane-change duration (0.1 m/s), sd", "s", 1.2, 2.0),
-    Target("M6", "peak steering-wheel angle, median", "deg", 3.0, 12.0),
-    Target("M7", "driver torque RMS, mean over drivers", "N·m", 0.2, 0.7),
-    Target("M8", "overshoot, median", "m", 0.1, 0.4),
-    Target("M9", "peak lateral speed, median", "m/s", 0.75, 1.1),
-    Target("M10", "onset (0.1 m/s) to crossing, median", "s", 2.0, 3.0),
-    Target("M11", "changes with a glance to that side", "%", 80.0, 90.0),
-    Target("M12", "6 s of straight driving with a false glance", "%", 12.0, 18.0),
-)
 
 
 class Comparison(NamedTuple):
@@ -93,12 +70,30 @@ class ManualDriving(NamedTuple):
     planned_changes: int
 
 
-def manual_trial(seed: int, participant: int) -> tuple[Row, list[Row]]:
-    """Drive one manual trial; return its row and its lane changes' rows."""
-    setup = TrialSetup(
-        participant=participant, seed=seed, condition="manual", intention="off"
+def manual_record(seed: int, participant: int, condition: str = MANUAL) -> TrialRecord:
+    """Drive one manual trial.
+
+    Args:
+        seed: Of the population.
+        participant: Number of the driver.
+        condition: Other conditions have other noise; the driver is the same.
+    """
+    return simulate_trial(
+        TrialSetup(
+            participant=participant, seed=seed, condition=condition, intention="off"
+        )
     )
-    record = simulate_trial(setup)
+
+
+def manual_trial(
+    seed: int, participant: int, condition: str = MANUAL
+) -> tuple[Row, list[Row]]:
+    """Drive one manual trial; return its row and its lane changes' rows."""
+    return measured(manual_record(seed, participant, condition))
+
+
+def measured(record: TrialRecord) -> tuple[Row, list[Row]]:
+    """The row of a manual trial and its lane changes' rows, with glances."""
     changes = lane_change_rows(record)
     for change in changes:
         change["glance"] = glance_before_change(record, change)
@@ -121,6 +116,7 @@ def drive_population(
     num_drivers: int,
     jobs: int = 2,
     progress: Callable[[int], None] | None = None,
+    condition: str = MANUAL,
 ) -> ManualDriving:
     """Let a population drive manually, one trial each.
 
@@ -129,43 +125,38 @@ def drive_population(
         num_drivers: How many.
         jobs: Threads.
         progress: Called with the number of trials just done.
+        condition: Other conditions have other noise; the drivers are the same.
     """
-    numbers = range(1, num_drivers + 1)
-    try:
-        done = run_jobs(
-            lambda number: manual_trial(seed, number),
-            numbers,
-            jobs,
-            lambda _: progress(1) if progress is not None else None,
-        )
-    except JobsStoppedError as stopped:
-        raise (stopped.__cause__ or stopped) from None
+    done = in_threads(
+        lambda number: manual_trial(seed, number, condition),
+        range(1, num_drivers + 1),
+        jobs,
+        progress,
+    )
+    return gathered(done)
+
+
+def gathered(done: Sequence[tuple[Row, list[Row]]]) -> ManualDriving:
+    """The driving of a population from the rows of its trials, one a driver."""
     trials = [trial for trial, _ in done]
     changes = [change for _, own in done for change in own]
-    return ManualDriving(trials, changes, PLANNED_CHANGES * num_drivers)
+    return ManualDriving(trials, changes, PLANNED_CHANGES * len(done))
+
+
+def rows_of(driving: ManualDriving, measure: Measure) -> list[Row]:
+    """The table of a measure."""
+    return driving.trials if measure.table == TRIALS else driving.changes
 
 
 def compare(driving: ManualDriving) -> list[Comparison]:
     """Every target beside what the population gives."""
-    trial, change = columns_of(driving.trials), columns_of(driving.changes)
-    values = {
-        "M1": _mean(trial("sdlp")),
-        "M2": _deviation(trial("sdlp")),
-        "M3": _mean(trial("swrr")),
-        "M4": _median(change("duration_by_speed")),
-        "M5": _deviation(change("duration_by_speed")),
-        "M6": math.degrees(_median(change("peak_steering_angle"))),
-        "M7": _mean(trial("driver_torque_rms")),
-        "M8": _median(change("overshoot")),
-        "M9": _median(change("peak_lateral_speed")),
-        "M10": _median(change("onset_to_crossing")),
-        "M11": 100.0 * _mean(change("glance")),
-        "M12": 100.0 * _mean(trial("false_glance_share")),
-    }
-    return [
-        Comparison(target, values[target.name], _within(target, values[target.name]))
-        for target in TARGETS
-    ]
+    found = []
+    for target in TARGETS:
+        measure = MEASURES[target.name]
+        values = columns_of(rows_of(driving, measure))(measure.column)
+        value = target_statistic(measure, values)
+        found.append(Comparison(target, value, _within(target, value)))
+    return found
 
 
 def _within(target: Target, value: Real) -> bool:
@@ -178,6 +169,13 @@ def missed_by(comparison: Comparison) -> Real:
     return max(target.low - value, value - target.high, 0.0)
 
 
+def missed_share(comparison: Comparison) -> Real:
+    """The same as a share of the limit that is missed [-]; 0 inside."""
+    target = comparison.target
+    limit = target.low if comparison.value < target.low else target.high
+    return missed_by(comparison) / limit
+
+
 def columns_of(rows: list[Row]) -> Callable[[str], NDArray[np.float64]]:
     """A function that gives a column without its missing values."""
 
@@ -186,15 +184,3 @@ def columns_of(rows: list[Row]) -> Callable[[str], NDArray[np.float64]]:
         return values[np.isfinite(values)]
 
     return column
-
-
-def _mean(values: NDArray[np.float64]) -> Real:
-    return float(values.mean()) if values.size else math.nan
-
-
-def _median(values: NDArray[np.float64]) -> Real:
-    return float(np.median(values)) if values.size else math.nan
-
-
-def _deviation(values: NDArray[np.float64]) -> Real:
-    return float(values.std(ddof=1)) if values.size > 1 else math.nan
