@@ -71,7 +71,7 @@ class DecisionParameters(NamedTuple):
     return_preparation_time: Real = 0.35
     preparation_spread: Real = 0.35
     glance_share: Real = 0.84
-    shoulder_share: Real = 0.3
+    shoulder_share: Real = 0.42
     settling_time: Real = 1.0
 
 

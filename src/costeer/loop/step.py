@@ -305,6 +305,23 @@ def _method(parameters: LoopParameters, state: LoopState) -> ControllerParameter
 
 
 @compiled
+def _tracked(
+    parameters: LoopParameters,
+    state: LoopState,
+    moved: DriverState,
+    noise: DriverNoise,
+) -> HeadTracker:
+    """What the tracker says of the head of a driver who has moved."""
+    return track_head(
+        parameters.sensors,
+        state.head,
+        head_yaw(parameters.driver.gaze, moved.gaze),
+        TrackerNoise(normal=noise.head_tracker, uniform=noise.tracker_uniform),
+        DT,
+    )
+
+
+@compiled
 def step(
     parameters: LoopParameters,
     state: LoopState,
@@ -355,13 +372,7 @@ def step(
         events=events,
         controller=controller_state,
         driver=_with_arm(driver_state, moved_arm),
-        head=track_head(
-            parameters.sensors,
-            state.head,
-            head_yaw(parameters.driver.gaze, driver_state.gaze),
-            TrackerNoise(normal=noise.head_tracker, uniform=noise.tracker_uniform),
-            DT,
-        ),
+        head=_tracked(parameters, state, driver_state, noise),
         torque_command=signals.applied_torque,
         time=state.time + DT,
     ), sample
