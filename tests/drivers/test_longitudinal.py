@@ -5,7 +5,15 @@ from __future__ import annotations
 import pytest
 
 from costeer.drivers import decision, longitudinal
-from costeer.drivers.decision import CHANGING, CRUISING, PASSING, DecisionState
+from costeer.drivers.decision import (
+    CHANGING,
+    CRUISING,
+    PASSING,
+    PREPARING,
+    PREPARING_RETURN,
+    RETURNING,
+    DecisionState,
+)
 from costeer.drivers.longitudinal import LongitudinalParameters
 from costeer.plant.parameters import CarParameters
 from costeer.plant.vehicle import drive_command, resistance
@@ -59,11 +67,26 @@ def test_overtaking_is_faster_by_the_drivers_own_amount() -> None:
     assert speed == pytest.approx(SPEED + PARAMETERS.overtaking_speed, abs=0.01)
 
 
+@pytest.mark.parametrize("phase", [PREPARING, CHANGING, PASSING])
+def test_a_driver_is_faster_from_the_decision_until_the_return(phase: float) -> None:
+    rest = longitudinal.initial_state()
+    more = PARAMETERS.overtaking_speed
+    assert longitudinal.wanted_speed(PARAMETERS, rest, phase) == SPEED + more
+    assert more > 0.0
+
+
+@pytest.mark.parametrize("phase", [CRUISING, PREPARING_RETURN, RETURNING])
+def test_a_driver_is_not_faster_otherwise(phase: float) -> None:
+    rest = longitudinal.initial_state()
+    assert longitudinal.wanted_speed(PARAMETERS, rest, phase) == SPEED
+
+
 def test_a_driver_about_to_overtake_comes_closer() -> None:
     car, ahead = driving(), leader(30.0, SPEED - 3.0)
     follow = longitudinal.interaction(PARAMETERS, car, ahead, CRUISING)
-    overtake = longitudinal.interaction(PARAMETERS, car, ahead, CHANGING)
-    assert 0.0 < overtake < follow
+    for phase in (PREPARING, CHANGING):
+        overtake = longitudinal.interaction(PARAMETERS, car, ahead, phase)
+        assert 0.0 < overtake < follow
 
 
 def test_a_leader_beside_or_behind_is_not_followed() -> None:

@@ -12,13 +12,17 @@ from numpy.typing import NDArray
 from costeer.base.packing import leaf_names, packed
 from costeer.drivers.driver import DriverParameters
 from costeer.drivers.population import (
+    POPULATION_VERSION,
     PopulationParameters,
+    Traits,
+    driver_with,
     hands_off,
     participant_driver,
 )
 from tests.drivers.samples import SPEED
 
 NUM_DRIVERS = 400
+USUAL = Traits(*([0.0] * len(Traits._fields)))
 NAMES = leaf_names(DriverParameters())
 
 
@@ -54,18 +58,23 @@ def test_the_suggested_speed_moves_the_preferred_speed_only() -> None:
 
 
 LOG_NORMAL = {
-    "tracking.wander_deviation": (0.19, 0.18),
-    "decision.change_duration": (6.9, 0.16),
-    "decision.headway": (2.3, 0.12),
-    "decision.return_distance": (28.0, 0.12),
-    "gaze.amplitude": (0.29, 0.1),
-    "vision.near_noise": (0.009, 0.2),
+    "tracking.wander_deviation": "wander_deviation_spread",
+    "decision.change_duration": "duration_spread",
+    "decision.headway": "headway_spread",
+    "decision.return_headway": "headway_spread",
+    "decision.patience": "patience_spread",
+    "gaze.amplitude": "glance_spread",
+    "vision.near_noise": "near_noise_spread",
+    "vision.motor_noise": "near_noise_spread",
+    "arm.inertia": "arm_spread",
+    "arm.damping": "arm_spread",
 }
 
 
 @pytest.mark.parametrize("name", LOG_NORMAL)
 def test_a_positive_quantity_is_log_normal_between_drivers(name: str) -> None:
-    median, spread = LOG_NORMAL[name]
+    median = packed(DriverParameters())[NAMES.index(name)]
+    spread = getattr(PopulationParameters(), LOG_NORMAL[name])
     logs = np.log(drawn(name))
     # Four standard errors of mean and of standard deviation.
     error = 4.0 * spread / math.sqrt(NUM_DRIVERS)
@@ -79,9 +88,32 @@ RANGES = {
     "reliance.reliance": (0.0, 1.0),
     "reliance.cocontraction": (1.5, 3.0),
     "tracking.lane_bias": (-0.2, 0.2),
+    "decision.shoulder_share": (0.0, 0.84),
     "longitudinal.overtaking_speed": (0.0, 5.0),
     "longitudinal.preferred_speed": (0.8 * SPEED, 1.2 * SPEED),
 }
+
+
+OF_TRAIT = {
+    "lead_time": "vision.lead_time",
+    "stiffness": "arm.stiffness",
+    "reliance": "reliance.reliance",
+    "cocontraction": "reliance.cocontraction",
+    "lane_bias": "tracking.lane_bias",
+    "shoulder": "decision.shoulder_share",
+    "overtaking_speed": "longitudinal.overtaking_speed",
+    "preferred_speed": "longitudinal.preferred_speed",
+}
+
+
+@pytest.mark.parametrize("trait", OF_TRAIT)
+def test_no_trait_however_extreme_leaves_its_range(trait: str) -> None:
+    name = OF_TRAIT[trait]
+    ends = [
+        packed(driver_with(USUAL._replace(**{trait: size}), SPEED))[NAMES.index(name)]
+        for size in (-30.0, 30.0)
+    ]
+    assert ends == pytest.approx(RANGES[name])
 
 
 @pytest.mark.parametrize("name", RANGES)
@@ -97,7 +129,22 @@ def test_noises_of_eye_and_hand_go_together() -> None:
 
 def test_what_is_not_spread_is_everybodys() -> None:
     varied = {name for name in NAMES if np.ptp(drawn(name)) > 0.0}
-    assert varied == {*LOG_NORMAL, *RANGES, "vision.motor_noise"}
+    assert varied == {*LOG_NORMAL, *RANGES}
+
+
+def test_the_driver_without_any_trait_is_the_usual_one() -> None:
+    assert driver_with(USUAL, SPEED) == DriverParameters()
+
+
+@pytest.mark.parametrize("trait", Traits._fields)
+def test_every_trait_moves_the_driver_a_little(trait: str) -> None:
+    more = driver_with(USUAL._replace(**{trait: 1.0}), SPEED)
+    moved = np.flatnonzero(packed(more) != packed(DriverParameters()))
+    assert 1 <= moved.size <= 2
+
+
+def test_the_population_says_its_version() -> None:
+    assert POPULATION_VERSION == "2"
 
 
 def test_no_spread_gives_the_median_driver() -> None:
