@@ -15,7 +15,12 @@ from costeer.plant.steering import ColumnState
 from costeer.plant.vehicle import VehicleState
 from costeer.plant.world import WorldState
 from costeer.sensing.measurement import Measurement
-from costeer.sensing.sensors import SensorParameters, measure, measured_head_yaw
+from costeer.sensing.sensors import (
+    HeadTracker,
+    SensorParameters,
+    measure,
+    measured_head_yaw,
+)
 
 ROAD = RoadParameters()
 SENSORS = SensorParameters()
@@ -37,7 +42,7 @@ WORLDS = st.builds(
 
 def measured(state: WorldState) -> Measurement:
     """The sample with 0.7 N·m of the driver and the head at 0.2."""
-    return measure(DEFAULT_CAR, ROAD, state, 0.7, 0.2)
+    return measure(DEFAULT_CAR, ROAD, state, 0.7, HeadTracker(0.2, True))
 
 
 @given(WORLDS)
@@ -91,13 +96,17 @@ def test_a_measured_head_stays_within_what_heads_do(head: float, draw: float) ->
     )  # one degree of ninety
 
 
-def test_a_head_that_is_not_seen_is_no_glance() -> None:
-    lost = measured_head_yaw(SENSORS, math.nan, 0.3)
-    sample = measure(
-        DEFAULT_CAR, ROAD, world.initial_state(DEFAULT_CAR, 0.0, 20.0), 0.0, lost
-    )
-    assert math.isnan(sample.head_yaw)
-    assert not sample.head_yaw_valid
+@pytest.mark.parametrize(
+    ("yaw", "seen", "valid"),
+    [(0.4, True, True), (0.4, False, False), (math.nan, True, False)],
+)
+def test_a_head_is_valid_if_it_is_seen_and_known(
+    yaw: float, seen: bool, valid: bool
+) -> None:
+    car = world.initial_state(DEFAULT_CAR, 0.0, 20.0)
+    sample = measure(DEFAULT_CAR, ROAD, car, 0.0, HeadTracker(yaw, seen))
+    assert sample.head_yaw == pytest.approx(yaw, nan_ok=True)
+    assert sample.head_yaw_valid == valid
 
 
 def test_a_batch_gives_what_its_members_give() -> None:
