@@ -15,6 +15,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from costeer.drivers.driver import DriverNoise
 from costeer.intention.wavefront import initial_state
 from costeer.loop.jax_rollout import Fixed, float64, jax_rollouts, trace
 from costeer.loop.noise import driver_noise
@@ -153,7 +154,7 @@ def test_trials_together_need_one_number_of_plant_steps() -> None:
     parameters = early_event(STRONG)
     two = [parameters, parameters._replace(plant_steps=16)]
     with pytest.raises(ValueError, match=r"have \[8, 16\] plant steps"):
-        jax_rollouts(two, SCRIPT, np.zeros((2, 10, 13)))
+        jax_rollouts(two, SCRIPT, np.zeros((2, 10, len(DriverNoise._fields))))
 
 
 def test_an_unknown_engine_is_refused_by_name() -> None:

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
 import pytest
 
-from costeer.drivers.driver import DriverNoise
+from costeer.drivers.decision import CHANGING, PREPARING
+from costeer.drivers.driver import DriverNoise, DriverParameters
 from costeer.drivers.population import hands_off
 from costeer.loop.rollout import REQUEST_DURATION, requested, scripted_probability
 from costeer.loop.step import (
@@ -22,7 +24,7 @@ from costeer.loop.step import (
 from costeer.plant.parameters import ColumnParameters
 
 QUIET = DriverNoise(*([0.0] * len(DriverNoise._fields)))._replace(
-    look_uniform=1.0, glance_uniform=1.0, leader_uniform=-1.0
+    look_uniform=1.0, glance_uniform=1.0, leader_uniform=-1.0, tracker_uniform=0.9
 )
 SPEED = 20.0
 
@@ -35,11 +37,14 @@ def hands_off_loop(offset: float = 0.0, steps: int = 8) -> LoopParameters:
     )
 
 
+PARAMETERS = hands_off_loop()
+
+
 def run(parameters: LoopParameters, num_steps: int) -> list[LoopState]:
     """States after each step, nobody at the wheel, no noise."""
     state, states = initial_state(parameters), []
     for _ in range(num_steps):
-        measurement = sense(parameters, state, QUIET)
+        measurement = sense(parameters, state)
         state, _ = step(parameters, state, measurement, math.nan, False, QUIET)
         states.append(state)
     return states
@@ -90,5 +95,54 @@ def test_a_plan_counts_while_its_crossing_lies_ahead_within_the_horizon() -> Non
     assert not planned_to_cross(-1.0, 3.0)
 
 
+def test_a_verdict_comes_the_horizon_or_half_the_change_before_the_crossing() -> None:
+    state = initial_state(PARAMETERS)
+    plan = state.driver.decision._replace(
+        phase=PREPARING, preparation_time=9.0, change_duration=8.0
+    )
+
+    def verdicts(parameters: LoopParameters) -> list[float]:
+        """When the verdict is positive before the crossing, 13 s after the decision."""
+        times = np.arange(0.0, 9.0, 0.1)
+        states = [
+            state._replace(
+                driver=state.driver._replace(decision=plan._replace(time_in_phase=time))
+            )
+            for time in times.tolist()
+        ]
+        given = [scripted_probability(parameters, one, 5.0) for one in states]
+        return [13.0 - t for t, p in zip(times.tolist(), given, strict=True) if p > 0.5]
+
+    assert max(verdicts(PARAMETERS)) == pytest.approx(5.0, abs=0.101)
+    follower = PARAMETERS._replace(follows_plan=1.0)
+    assert verdicts(follower) == []  # a change of 8 s begins 4 s before the crossing
+    begun = plan._replace(phase=CHANGING, time_in_phase=0.0)
+    steering = state._replace(driver=state.driver._replace(decision=begun))
+    assert scripted_probability(follower, steering, 5.0) == 1.0
+
+
+def test_the_tracker_sees_the_head_of_the_step_before() -> None:
+    turned = hands_off_loop()._replace(driver=DriverParameters())
+    state = initial_state(turned)
+    head = state.driver.gaze._replace(
+        glancing=True, time_in_glance=0.5, side=1.0, amplitude=0.4
+    )
+    state = state._replace(driver=state.driver._replace(gaze=head))
+    assert sense(turned, state).head_yaw == 0.0
+    after, _ = step(turned, state, sense(turned, state), math.nan, False, QUIET)
+    assert sense(turned, after).head_yaw == pytest.approx(0.4)
+    assert sense(turned, after).head_yaw_valid
+
+
+def test_a_lost_face_is_not_valid_in_the_measurement() -> None:
+    lost = QUIET._replace(tracker_uniform=0.0)  # below any rate times the step
+    state = initial_state(PARAMETERS)
+    after, sample = step(
+        PARAMETERS, state, sense(PARAMETERS, state), math.nan, False, lost
+    )
+    assert sample.measurement.head_yaw_valid
+    assert not sense(PARAMETERS, after).head_yaw_valid
+
+
 def test_a_driver_without_a_plan_is_no_positive() -> None:
-    assert scripted_probability(initial_state(hands_off_loop()), 3.0) == 0.0
+    assert scripted_probability(PARAMETERS, initial_state(PARAMETERS), 3.0) == 0.0

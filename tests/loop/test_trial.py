@@ -156,6 +156,19 @@ def test_the_scripted_intention_is_positive_before_the_drivers_own_crossing() ->
     assert intended[positive].all()
 
 
+def test_the_head_is_lost_as_often_as_the_tracker_loses_it() -> None:
+    columns = trial(MANUAL._replace(length=20_000.0)).columns
+    lost = ~np.asarray(columns["head_yaw_valid"])
+    begins = np.count_nonzero(lost[1:] & ~lost[:-1])
+    # 0.01 per second over 17 minutes and more for turned heads: about 10 to 20,
+    # Poisson; each is a short run in which the angle stays.
+    assert 2 <= begins <= 40
+    assert lost.mean() < 0.02
+    yaw = columns["head_yaw"]
+    assert (yaw[1:] == yaw[:-1])[lost[1:]].all()
+    assert np.abs(yaw).max() <= 1.0
+
+
 def test_no_intention_is_asked_when_it_is_off() -> None:
     columns = trial(STRONG._replace(intention="off")).columns
     assert np.isnan(columns["crossing_probability"]).all()
@@ -176,7 +189,7 @@ def test_metadata_says_what_was_run() -> None:
     metadata = trial(STRONG).metadata
     assert metadata["seed"] == 3
     assert metadata["condition"] == "strong-normal"
-    assert metadata["driver"] == "virtual, population 1"
+    assert metadata["driver"] == "virtual, population 2"
     assert metadata["intention_model_hash"] is None
     assert metadata["driver_torque_source"] == "simulated"
     assert len(str(metadata["configuration_hash"])) == 64
