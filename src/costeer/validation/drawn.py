@@ -5,11 +5,17 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from costeer.base.array import Real
 from costeer.base.packing import leaf_names, packed
 from costeer.drivers.driver import DriverParameters
-from costeer.drivers.population import participant_driver
+from costeer.drivers.population import (
+    Traits,
+    correlation_matrix,
+    drawn_traits,
+    participant_driver,
+)
 
 UNITS = {
     "vision.lead_time": "s",
@@ -79,3 +85,41 @@ def spreads(drivers: list[dict[str, Real]]) -> list[Spread]:
         )
         for name, unit in UNITS.items()
     ]
+
+
+class TraitPair(NamedTuple):
+    """Two traits that go together.
+
+    Attributes:
+        first: Name of a trait.
+        second: Name of another.
+        correlation: In the population [-].
+    """
+
+    first: str
+    second: str
+    correlation: Real
+
+
+def trait_pairs() -> list[TraitPair]:
+    """Every two traits that are correlated, strongest first."""
+    matrix, names = correlation_matrix(), Traits._fields
+    pairs = [
+        TraitPair(names[row], names[column], float(matrix[row, column]))
+        for row in range(len(names))
+        for column in range(row)
+        if matrix[row, column] != 0.0
+    ]
+    return sorted(pairs, key=lambda pair: -abs(pair.correlation))
+
+
+def drawn_correlations(seed: int, num_drivers: int) -> NDArray[np.float64]:
+    """Correlations of the traits among these drivers, shape `(trait, trait)`.
+
+    Returns:
+        NaN with fewer than three drivers.
+    """
+    if num_drivers < 3:
+        return np.full((len(Traits._fields), len(Traits._fields)), np.nan)
+    drawn = [drawn_traits(seed, number) for number in range(1, num_drivers + 1)]
+    return np.asarray(np.corrcoef(np.array(drawn), rowvar=False))

@@ -15,7 +15,6 @@ from costeer.study.figures.style import (
     FULL_WIDTH_MM,
     INK,
     NORMAL,
-    SIGNAL_COLOURS,
     SMALL,
     Margins,
     new_figure,
@@ -23,6 +22,7 @@ from costeer.study.figures.style import (
     styled,
     svg_text,
 )
+from costeer.validation.look import HUMAN, OURS, human_range, no_counts
 from costeer.validation.manual import (
     Comparison,
     ManualDriving,
@@ -39,8 +39,6 @@ _MARGINS = Margins(
     between_columns=11.0,
     between_rows=14.0,
 )
-_HUMAN = SIGNAL_COLOURS["driver"]
-_OURS = "#a8a8a8"
 _BINS = 28
 
 
@@ -121,18 +119,17 @@ def _distribution(
     """A histogram, the human range of its centre, and the population's."""
     shown = values * panel.factor
     centre = found[panel.centre]
-    axes.axvspan(centre.target.low, centre.target.high, color=_HUMAN, alpha=0.3, lw=0)
+    human_range(axes, centre.target.low, centre.target.high)
     if shown.size:
         top = max(float(np.percentile(shown, 99.5)), centre.target.high)
         bins = np.linspace(min(0.0, float(shown.min())), 1.05 * top, _BINS)
         axes.hist(
-            np.clip(shown, bins[0], bins[-1]), bins=bins.tolist(), color=_OURS, zorder=2
+            np.clip(shown, bins[0], bins[-1]), bins=bins.tolist(), color=OURS, zorder=2
         )
         axes.axvline(centre.value, color=INK, linewidth=1.4, zorder=3)
         axes.set_xlim(bins[0], bins[-1])
     axes.set_xlabel(panel.label, size=NORMAL)
-    axes.set_yticks([])
-    axes.spines["left"].set_visible(False)
+    no_counts(axes)
     axes.set_title(_words(panel, found), size=SMALL)
 
 
@@ -158,12 +155,12 @@ def _shares(axes: Axes, found: dict[str, Comparison]) -> None:
     for place, name in enumerate(_SHARES):
         comparison = found[name]
         target = comparison.target
-        axes.bar(place, comparison.value, width=0.42, color=_OURS, zorder=2)
+        axes.bar(place, comparison.value, width=0.42, color=OURS, zorder=2)
         axes.fill_between(
             [place - 0.4, place + 0.4],
             target.low,
             target.high,
-            color=_HUMAN,
+            color=HUMAN,
             alpha=0.35,
             linewidth=0.0,
             zorder=3,

@@ -151,14 +151,12 @@ MEASURES = {
     "M3": Measure(TRIALS, "swrr", MEAN, "Steering reversals"),
     "M4": Measure(CHANGES, "duration_by_speed", MEDIAN, "Duration (0.1 m/s)"),
     "M5": Measure(CHANGES, "duration_by_speed", DEVIATION, "Duration (0.1 m/s)"),
-    "M6": Measure(
-        CHANGES, "peak_steering_angle", MEDIAN, "Peak steering-wheel angle", _DEG
-    ),
+    "M6": Measure(CHANGES, "peak_steering_angle", MEDIAN, "Peak wheel angle", _DEG),
     "M7": Measure(TRIALS, "driver_torque_rms", MEAN, "Driver torque RMS"),
     "M8": Measure(CHANGES, "overshoot", MEDIAN, "Overshoot"),
     "M9": Measure(CHANGES, "peak_lateral_speed", MEDIAN, "Peak lateral speed"),
     "M10": Measure(CHANGES, "onset_to_crossing", MEDIAN, "Onset to crossing"),
-    "M11": Measure(CHANGES, "glance", MEAN, "Lane changes with a glance", 100.0),
+    "M11": Measure(CHANGES, "glance", MEAN, "Changes with a glance", 100.0),
     "M12": Measure(TRIALS, "false_glance_share", MEAN, "False glances", 100.0),
 }
 """By the name of the target."""

@@ -1,0 +1,203 @@
+"""A population as one figure: how its parameters are spread and go together."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from costeer.base.array import Real
+from costeer.drivers.population import (
+    FACTORS,
+    POPULATION_VERSION,
+    Traits,
+    correlation_matrix,
+)
+from costeer.study.figures.style import (
+    FULL_WIDTH_MM,
+    INK,
+    RULE,
+    SMALL,
+    STRENGTH_COLOURS,
+    Margins,
+    new_figure,
+    panels,
+    styled,
+    svg_text,
+)
+from costeer.study.reporting.numerals import number
+from costeer.validation.drawn import UNITS, drawn_correlations
+from costeer.validation.look import OURS, no_counts
+
+_COLUMNS = 5
+_ROW_MM = 22.0
+_CORRELATIONS_MM = 110.0
+_BINS = 24
+_LEAST_NAMED = 0.005
+"""Correlations below this have no number in their cell [-]."""
+
+_TEXT_ON_DARK = 0.45
+_LOW, _HIGH = STRENGTH_COLOURS["weak"], STRENGTH_COLOURS["strong"]
+"""Colours of negative and of positive correlations."""
+
+
+class Population(NamedTuple):
+    """Drivers as they are drawn.
+
+    Attributes:
+        seed: Of the population.
+        drivers: Of `drawn_drivers`.
+    """
+
+    seed: int
+    drivers: list[dict[str, Real]]
+
+
+def population_parameters_svg(population: Population) -> str:
+    """Return the figure as SVG; the same population gives the same text."""
+    with styled():
+        figure = draw_parameters(population)
+        return svg_text(figure, "population", parameters_description(population))
+
+
+def parameters_description(population: Population) -> str:
+    """Text for those who do not see the figure."""
+    factors = "; ".join(
+        f"{factor.name}: " + ", ".join(map(spoken, factor.loadings))
+        for factor in FACTORS
+    )
+    return (
+        f"Histograms of the {len(UNITS)} parameters that differ between "
+        f"{len(population.drivers)} virtual drivers, and correlations of the "
+        f"{len(Traits._fields)} traits behind them. Traits that go together: "
+        f"{factors}."
+    )
+
+
+def spoken(name: str) -> str:
+    """A name of the code in words."""
+    return name.replace("_", " ")
+
+
+def draw_parameters(population: Population) -> Figure:
+    """Draw histograms above correlations and loadings; call inside `styled`."""
+    rows = -(-len(UNITS) // _COLUMNS)
+    spread_mm = 9.0 + rows * _ROW_MM
+    height = spread_mm + _CORRELATIONS_MM
+    figure = new_figure(FULL_WIDTH_MM, height)
+    _heading(figure, population, height)
+    _histograms(figure, population, rows, height - spread_mm)
+    margins = Margins(
+        left=24.0, right=3.0, top=spread_mm + 9.0, bottom=22.0, between_columns=25.0
+    )
+    ((matrix, bars),) = panels(figure, 1, 2, margins, (2.2, 1.0))
+    _correlations(matrix, population)
+    _loadings(bars)
+    return figure
+
+
+def _heading(figure: Figure, population: Population, height: Real) -> None:
+    figure.text(
+        2.0 / FULL_WIDTH_MM,
+        1.0 - 1.5 / height,
+        f"Population {POPULATION_VERSION}, seed {population.seed}, "
+        f"{len(population.drivers)} virtual drivers. Histograms: how many drivers have "
+        "that value; line: median.",
+        ha="left",
+        va="top",
+    )
+
+
+def _histograms(
+    figure: Figure, population: Population, rows: int, below_mm: Real
+) -> None:
+    margins = Margins(
+        left=3.0,
+        right=3.0,
+        top=9.0,
+        bottom=below_mm + 8.0,
+        between_columns=5.0,
+        between_rows=11.5,
+    )
+    axes = [a for row in panels(figure, rows, _COLUMNS, margins) for a in row]
+    for axis, (name, unit) in zip(axes, UNITS.items(), strict=False):
+        values = np.array([driver[name] for driver in population.drivers])
+        _histogram(axis, values)
+        axis.set_title(spoken(name).replace(".", ": "), size=SMALL, pad=2.0)
+        axis.set_xlabel(f"[{unit}]" if unit != "-" else "[–]", size=SMALL, labelpad=1.0)
+    for axis in axes[len(UNITS) :]:
+        axis.set_visible(False)
+
+
+def _histogram(axes: Axes, values: NDArray[np.float64]) -> None:
+    edges = np.linspace(values.min(), values.max(), _BINS + 1)
+    bins = edges if np.ptp(values) > 0.0 else np.array([0.9, 1.1]) * values[0]
+    axes.hist(values, bins=bins.tolist(), color=OURS)
+    axes.axvline(float(np.median(values)), color=INK, linewidth=1.2)
+    axes.locator_params(axis="x", nbins=3)
+    no_counts(axes)
+
+
+def _correlations(axes: Axes, population: Population) -> None:
+    """As specified below the diagonal, as drawn above it."""
+    from matplotlib.colors import LinearSegmentedColormap
+
+    names = [spoken(name) for name in Traits._fields]
+    given = correlation_matrix()
+    drawn = drawn_correlations(population.seed, len(population.drivers))
+    shown = np.tril(given, -1) + np.triu(drawn, 1)
+    np.fill_diagonal(shown, np.nan)
+    colours = LinearSegmentedColormap.from_list("both", [_LOW, "white", _HIGH])
+    axes.imshow(shown, cmap=colours, vmin=-0.7, vmax=0.7, aspect="equal")
+    for row, column in np.ndindex(shown.shape):
+        value = float(shown[row, column])
+        if row > column and abs(value) >= _LEAST_NAMED:
+            _cell_text(axes, row, column, value)
+    places = range(len(names))
+    axes.set_xticks(places, names, rotation=90.0)
+    axes.set_yticks(places, names)
+    axes.tick_params(length=0.0)
+    axes.plot([-0.5, len(names) - 0.5], [-0.5, len(names) - 0.5], color=RULE, lw=0.6)
+    axes.spines[["top", "right"]].set_visible(True)
+    axes.set_title(
+        "Correlations of traits. Below the diagonal: as given;\n"
+        "above: among these drivers (the rest is chance)",
+        size=SMALL,
+    )
+
+
+def _cell_text(axes: Axes, row: int, column: int, value: Real) -> None:
+    axes.text(
+        column,
+        row,
+        number(value, 2).replace("0.", "."),
+        ha="center",
+        va="center",
+        fontsize=SMALL - 2.0,
+        color="white" if abs(value) > _TEXT_ON_DARK else INK,
+    )
+
+
+def _loadings(axes: Axes) -> None:
+    """Each trait's correlation with its factor, factors one below the other."""
+    place, ticks = 0.0, []
+    for factor in FACTORS:
+        axes.text(-0.98, place, factor.name, fontweight="bold", va="center", size=SMALL)
+        place += 1.0
+        for name, loading in factor.loadings.items():
+            colour = _HIGH if loading > 0.0 else _LOW
+            axes.barh(place, loading, height=0.62, color=colour)
+            ticks.append((place, spoken(name)))
+            place += 1.0
+        place += 0.6
+    axes.axvline(0.0, color=INK, linewidth=0.6)
+    axes.set_yticks(*map(list, zip(*ticks, strict=True)))
+    axes.tick_params(axis="y", length=0.0)
+    axes.spines["left"].set_visible(False)
+    axes.set_ylim(place - 0.6, -0.8)
+    axes.set_xlim(-1.0, 1.0)
+    axes.set_xlabel("Correlation with the factor [–]")
+    axes.set_title("Factors behind the traits", size=SMALL)

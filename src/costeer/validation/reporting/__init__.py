@@ -1,0 +1,1 @@
+"""The words, tables, figures and page of the drivers' validation report."""
