@@ -1,0 +1,151 @@
+"""The linear loop of driver and car about straight driving, for many drivers at once.
+
+Its matrix is made of central differences of the very functions of a control step, as
+in loop/linear.py: no second derivation can go wrong. Noise and dry friction are left
+out; the wander of the aim does not depend on the car and adds no eigenvalue to look
+at.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from costeer.drivers.driver import NORMAL_DRAWS, DriverNoise, DriverParameters
+from costeer.loop.step import (
+    DT,
+    LoopParameters,
+    LoopState,
+    drive,
+    initial_state,
+    move,
+    sense,
+)
+
+Signal = NDArray[np.float64]
+Spectrum = NDArray[np.complex128]
+
+STATES = (
+    "lateral_position",
+    "yaw_angle",
+    "lateral_velocity",
+    "yaw_rate",
+    "steering_wheel_angle",
+    "steering_wheel_rate",
+    "seen",
+    "lagged",
+    "equilibrium",
+    "felt",
+    "reflex",
+)
+"""What car, wheel, eyes and arms remember about straight driving."""
+
+SLOWEST_SWING = 0.5
+"""Slower motion than this is drift, not a swing [rad/s]."""
+
+_STEP = 1e-6
+
+
+def smooth(parameters: LoopParameters) -> LoopParameters:
+    """The loop without dry friction, which has no slope at rest."""
+    return parameters._replace(column=parameters.column._replace(friction=0.0))
+
+
+def quiet(num_steps: int) -> Signal:
+    """Draws that move nothing, shape `(num_steps, draw)`."""
+    noise = np.ones((num_steps, len(DriverNoise._fields)))
+    noise[:, :NORMAL_DRAWS] = 0.0
+    return noise
+
+
+def _stacked(members: Sequence[Any]) -> Any:  # Any: a tree of numbers or of arrays
+    """Named tuples of numbers as one of arrays of shape `(member, 1)`."""
+    first = members[0]
+    if isinstance(first, tuple):
+        parts = [_stacked(part) for part in zip(*members, strict=True)]
+        return type(first)(*parts)
+    return np.array(members, dtype=np.float64)[:, None]
+
+
+def _displaced(parameters: LoopParameters, x: Signal) -> LoopState:
+    """The loop displaced from straight driving by `x`, `(driver, run, state)`."""
+    state = initial_state(parameters)
+    at = dict(zip(STATES, np.moveaxis(x, -1, 0), strict=True))
+    vehicle, hands = state.world.vehicle, state.driver.arm
+    aim = vehicle.lateral_position + parameters.driver.tracking.lane_bias
+    moved = vehicle._replace(
+        lateral_position=aim + at["lateral_position"],
+        **{name: at[name] for name in STATES[1:4]},
+    )
+    wheel = state.world.column._replace(**{name: at[name] for name in STATES[4:6]})
+    eyes = state.driver.vision._replace(delayed=at["seen"], lagged=at["lagged"])
+    arms = hands._replace(
+        equilibrium=at["equilibrium"], delayed=at["felt"], reflex=at["reflex"]
+    )
+    return state._replace(
+        world=state.world._replace(vehicle=moved, column=wheel),
+        driver=state.driver._replace(vision=eyes, arm=arms),
+    )
+
+
+def _after_a_step(parameters: LoopParameters, x: Signal) -> Signal:
+    """`STATES` one control step after `x`, up to the place of the aim."""
+    state = _displaced(parameters, x)
+    noise = DriverNoise(*quiet(1)[0].tolist())
+    driver, action = drive(parameters, state, sense(parameters, state), noise)
+    world, hands = move(parameters, state, action)
+    vehicle, wheel, eyes = world.vehicle, world.column, driver.vision
+    values = (
+        *(getattr(vehicle, name) for name in STATES[:4]),
+        *(getattr(wheel, name) for name in STATES[4:6]),
+        *(eyes.delayed, eyes.lagged),
+        *(hands.equilibrium, hands.delayed, hands.reflex),
+    )
+    return np.stack([np.broadcast_to(v, x.shape[:-1]) for v in values], axis=-1)
+
+
+def transition(
+    parameters: LoopParameters, drivers: Sequence[DriverParameters]
+) -> Signal:
+    """Matrix of one control step about straight driving for each driver.
+
+    Args:
+        parameters: Of a manual trial; its driver is left out.
+        drivers: Who holds the wheel.
+
+    Returns:
+        Shape `(driver, state, state)`, in the order of `STATES`.
+    """
+    every = smooth(parameters)._replace(driver=_stacked(drivers))
+    steps = _STEP * np.concatenate([np.eye(len(STATES)), -np.eye(len(STATES))])
+    tried = np.broadcast_to(steps, (len(drivers), *steps.shape))
+    ahead, back = np.split(_after_a_step(every, tried), 2, axis=1)
+    return np.swapaxes((ahead - back) / (2.0 * _STEP), 1, 2)
+
+
+def poles(matrices: Signal) -> Spectrum:
+    """Eigenvalues of control steps as rates [1/s], shape `(driver, state)`."""
+    values = np.linalg.eigvals(matrices).astype(np.complex128)
+    # What is gone after one step has no rate; this one is fast enough.
+    lasting = np.where(np.abs(values) > 0.0, values, np.exp(-100.0))
+    return np.asarray(np.log(lasting) / DT)
+
+
+def least_damped(rates: Spectrum) -> tuple[Signal, Signal]:
+    """Damping ratio [-] and frequency [rad/s] of the swing that lasts longest.
+
+    Args:
+        rates: Of the linear loop [1/s], shape `(driver, state)`.
+
+    Returns:
+        Shape `(driver,)` each; 1 and NaN without any swing.
+    """
+    size = np.abs(rates)
+    ratio = np.where(rates.imag > SLOWEST_SWING, -rates.real / size, 1.0)
+    place = ratio.argmin(axis=1)[:, None]
+    least = np.take_along_axis(ratio, place, axis=1)[:, 0]
+    frequency = np.take_along_axis(size, place, axis=1)[:, 0]
+    return least, np.where(least < 1.0, frequency, np.nan)
