@@ -96,16 +96,22 @@ def test_the_delay_acts_on_the_sum_of_far_and_near(frequency: float) -> None:
     assert abs(far - 1.0) > 2e-2  # the factor is not 1
 
 
+@pytest.mark.parametrize("times", [(1.75, 1.0), (3.0, 2.0)])
 @pytest.mark.parametrize("frequency", [0.02, 0.1, 0.5, 2.0])
-def test_compensation_is_a_lead_lag_of_the_near_angle(frequency: float) -> None:
+def test_compensation_is_a_lead_lag_of_the_near_angle(
+    frequency: float, times: tuple[float, float]
+) -> None:
+    lead, lag = times
+    parameters = PARAMETERS._replace(lead_time=lead, lag_time=lag)
     s = 2j * math.pi * frequency
-    lead_lag = (1.0 + PARAMETERS.lead_time * s) / (1.0 + PARAMETERS.lag_time * s)
-    expected = 15.0 / SPEED * lead_lag * cmath.exp(-0.04 * s)
+    lead_lag = (1.0 + lead * s) / (1.0 + lag * s)
+    expected = parameters.near_gain / SPEED * lead_lag * cmath.exp(-0.04 * s)
     # The lag takes the sample of this step for the whole of it: half a step early,
-    # s dt / 2 of the part that lags; the delay is Pade's, (s T)^3 / 12 off.
+    # s dt / 2 of the part that lags; the delay is Padé's, (s T)^3 / 12 off. After 30 s
+    # up to exp(-15) of the lag is left.
     size = abs(expected)
-    allowed = size * (abs(s) * DT / 2.0 + abs(0.04 * s) ** 3 / 12.0) + 1e-9
-    assert abs(near_gain(frequency) - expected) < allowed
+    allowed = size * (abs(s) * DT / 2.0 + abs(0.04 * s) ** 3 / 12.0) + 1e-6
+    assert abs(near_gain(frequency, parameters) - expected) < allowed
 
 
 def test_compensation_starts_at_lead_over_lag_and_settles_to_the_angle() -> None:
