@@ -143,7 +143,7 @@ def least_damped(rates: Spectrum) -> tuple[Signal, Signal]:
     Returns:
         Shape `(driver,)` each; 1 and NaN without any swing.
     """
-    size = np.abs(rates)
+    size = np.maximum(np.abs(rates), np.finfo(np.float64).tiny)
     ratio = np.where(rates.imag > SLOWEST_SWING, -rates.real / size, 1.0)
     place = ratio.argmin(axis=1)[:, None]
     least = np.take_along_axis(ratio, place, axis=1)[:, 0]
