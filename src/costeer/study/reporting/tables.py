@@ -37,6 +37,7 @@ class Table(NamedTuple):
         rows: Text of the cells; a line break in a cell is shown as one.
         num_labels: Leading columns that are words, not numbers.
         prose: Whether cells may be broken into lines anywhere.
+        num_words: Last columns that are words, not numbers.
     """
 
     name: str
@@ -46,6 +47,7 @@ class Table(NamedTuple):
     rows: tuple[tuple[str, ...], ...]
     num_labels: int = 1
     prose: bool = False
+    num_words: int = 0
 
 
 MOST_ROWS = 150

@@ -37,18 +37,19 @@ def people_table(comparisons: Sequence[RealComparison]) -> Table:
         ),
         rows=tuple(_row(each) for each in comparisons),
         num_labels=2,
+        num_words=2,
     )
 
 
 def _row(each: RealComparison) -> tuple[str, ...]:
     return (
         each.name,
-        f"{wrapped(f'{each.quantity} [{each.unit}]', 38)}\n{wrapped(each.source, 38)}",
+        f"{wrapped(f'{each.quantity} [{each.unit}]', 32)}\n{wrapped(each.source, 32)}",
         _people(each),
         _told(each.drivers, each.statistic),
         span(each.low, each.high),
         real_verdict_told(each),
-        wrapped(each.reason, 36),
+        wrapped(each.reason, 31),
     )
 
 

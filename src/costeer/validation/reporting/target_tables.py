@@ -47,6 +47,7 @@ def targets_table(
         ),
         rows=tuple(_target_row(each, spread) for each, spread in pairs),
         num_labels=2,
+        num_words=2,
     )
 
 
@@ -96,4 +97,6 @@ def overview_table(quantities: Sequence[Quantity]) -> Table:
 
 
 def _told(value: float) -> str:
-    return number(value, 0) if abs(value) >= 1000.0 else short(value, 4)
+    """Four digits; whole numbers as such."""
+    whole = abs(value) >= 1000.0 or float(value).is_integer()
+    return number(value, 0) if whole else short(value, 4)

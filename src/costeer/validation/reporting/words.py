@@ -27,7 +27,9 @@ def short(quantity: Real, digits: int = _DIGITS) -> str:
     """So many significant digits without a power of ten; a dash if undefined."""
     if not math.isfinite(quantity):
         return NOTHING
-    size = math.floor(math.log10(abs(quantity))) if quantity else 0
+    if quantity == 0.0:
+        return "0"
+    size = math.floor(math.log10(abs(quantity)))
     return number(quantity, min(max(0, digits - 1 - size), _MOST_DECIMALS))
 
 

@@ -1,0 +1,162 @@
+"""Tables of tests of single drivers: arms, wrong guidance, stability."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from costeer.study.reporting.numerals import NOTHING, count, number, percent
+from costeer.study.reporting.tables import Table
+from costeer.validation.arms import ArmRow, ArmTest, arm_rows
+from costeer.validation.reporting.words import short
+from costeer.validation.resistance import QUANTITIES, Resistance, resistance_rows
+from costeer.validation.stability import (
+    Stability,
+    StabilityBounds,
+    leaves_road,
+    oscillates,
+)
+
+_PERCENTILES = (5.0, 50.0, 95.0)
+
+
+def arms_table(tests: Sequence[ArmTest]) -> Table:
+    """Return the admittance of each task at each frequency."""
+    return Table(
+        name="arms",
+        title="Admittance of hands and arms",
+        note="Magnitude [rad/(N·m)] over the drivers, the assumed range of people's "
+        "arms, and the share of drivers within it.",
+        header=("Task", "Frequency [Hz]", "5 %", "Median", "95 %", "Range", "Within"),
+        rows=tuple(_arm_row(each) for each in arm_rows(tests)),
+    )
+
+
+def _arm_row(row: ArmRow) -> tuple[str, ...]:
+    return (
+        row.task,
+        f"{row.frequency:g}",
+        *(short(each) for each in row.percentiles),
+        f"{short(row.low)} to {short(row.high)}",
+        percent(row.share_inside, 1.0),
+    )
+
+
+def resistance_table(found: Sequence[Resistance]) -> Table:
+    """Return what drivers did against lane changes that they did not want."""
+    units = dict(QUANTITIES.values())
+    rows = resistance_rows(found)
+    names = list(dict.fromkeys(row.quantity for row in rows))
+    cells: dict[tuple[float, str], list[str]] = {}
+    for row in rows:
+        low, middle, high = row.percentiles
+        share = units[row.quantity] == "-" and "gain" not in row.quantity
+        text = (
+            percent(row.mean, 1.0)
+            if share
+            else f"{short(middle)}\n{_ends(low, high)}".rstrip()
+        )
+        cells.setdefault((row.change_duration, row.system), []).append(text)
+    drivers = len(found[0].deviation)
+    return Table(
+        name="resistance",
+        title="A lane change that the driver does not want",
+        note=f"Strong guidance, {drivers} pilot drivers, four trials each, on an empty "
+        "road. Medians over drivers, below them 5 and 95 %; shares of all trials. "
+        "Never yields: a system whose verdict is always consistent.",
+        header=("System", "Duration [s]", *(_titled(n, units[n]) for n in names)),
+        rows=tuple(
+            (system, f"{duration:g}", *texts)
+            for (duration, system), texts in sorted(
+                cells.items(), key=lambda item: (item[0][1], item[0][0])
+            )
+        ),
+    )
+
+
+def _titled(quantity: str, unit: str) -> str:
+    text = quantity[0].upper() + quantity[1:]
+    return f"{text} [{unit if unit != '-' else '–'}]"
+
+
+def _ends(low: float, high: float) -> str:
+    text = f"{short(low)} to {short(high)}"
+    return "" if NOTHING in text else text
+
+
+def stability_table(found: Stability) -> Table:
+    """Return percentiles of damping and drift, bounds, and who is beyond them."""
+    bounds = StabilityBounds()
+    rows = (
+        _stable_row(
+            "Damping ratio of the slowest-decaying swing [–]",
+            found.damping_ratio,
+            f"at least {bounds.damping_ratio:g}",
+            found.damping_ratio < bounds.damping_ratio,
+        ),
+        _stable_row(
+            "Largest eigenvalue of a control step [–]",
+            found.largest_modulus,
+            "below 1",
+            found.largest_modulus >= 1.0,
+            5,
+        ),
+        _stable_row(
+            "A swing over the one before it [–]",
+            found.swing_ratio,
+            f"at most {bounds.swing_ratio:g}",
+            found.swing_ratio > bounds.swing_ratio,
+        ),
+        _stable_row(
+            "0.5 m offset within 0.1 m after [s]",
+            found.settling_time,
+            f"at most {bounds.settling_time:g}",
+            found.settling_time > bounds.settling_time,
+        ),
+        _stable_row("Hunting with dry friction [m]", found.hunting, NOTHING, None),
+        _stable_row(
+            "Least distance of a wheel from the road's edge lines [m]",
+            found.edge_margin,
+            f"at least {number(-bounds.edge_strip, 1)}",
+            leaves_road(found, bounds),
+        ),
+    )
+    num_drivers = len(found.damping_ratio)
+    return Table(
+        name="stability",
+        title=f"Stability of {num_drivers} drivers",
+        note=f"{found.speed * 3.6:.0f} km/h, manual. The first two rows: the linear "
+        "loop of driver and car. Then runs without noise after an offset; the last "
+        f"row: a manual trial each. {int(oscillates(found).sum())} drivers oscillate, "
+        f"{int(leaves_road(found).sum())} leave the road.",
+        header=(
+            "Quantity [unit]",
+            "Smallest",
+            "5 %",
+            "Median",
+            "95 %",
+            "Largest",
+            "Bound",
+            "Beyond",
+        ),
+        rows=rows,
+    )
+
+
+def _stable_row(
+    title: str,
+    values: NDArray[np.float64],
+    bound: str,
+    beyond: NDArray[np.bool_] | None,
+    digits: int = 3,
+) -> tuple[str, ...]:
+    low, middle, high = np.percentile(values, _PERCENTILES, method="nearest")
+    points = (values.min(), low, middle, high, values.max())
+    return (
+        title,
+        *(short(float(each), digits) for each in points),
+        bound,
+        NOTHING if beyond is None else count(float(np.count_nonzero(beyond))),
+    )
