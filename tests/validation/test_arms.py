@@ -160,6 +160,11 @@ def test_a_row_holds_the_percentiles_of_the_drivers() -> None:
     assert [row.frequency, *(each.frequency for each in rest)] == FREQUENCIES.tolist()
 
 
+def test_the_perturbation_is_made_of_equal_sines_that_begin_at_zero() -> None:
+    assert coefficients(perturbation(1.0)) == pytest.approx(-1j * 10.0 * 480.0 / 2.0)
+    assert perturbation()[0] == 0.0
+
+
 def test_an_unknown_task_is_refused() -> None:
     with pytest.raises(ValueError, match="choose one of relaxed, driving, tense"):
         shaken(USUAL, "asleep", perturbation())

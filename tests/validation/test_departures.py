@@ -169,6 +169,10 @@ def test_drivers_who_differ_depart_more_than_their_mean() -> None:
     assert found.gaussian_per_km == pytest.approx(np.mean(own))
     assert found.usual_per_km == pytest.approx(own[1])
     assert found.gaussian_per_km > 3.0 * found.usual_per_km
+    short = [holds[0], holds[1], holds[2]._replace(distance=4000.0)]
+    assert summarise(departures(short)).gaussian_per_km == pytest.approx(
+        (own[0] + own[1] + 0.5 * own[2]) / 2.5
+    )
 
 
 def test_who_keeps_no_lane_is_left_out() -> None:
