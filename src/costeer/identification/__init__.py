@@ -1,0 +1,1 @@
+"""Drivers fitted to recordings of manual driving."""

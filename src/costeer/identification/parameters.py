@@ -1,0 +1,157 @@
+"""Which parameters a fit looks for, which it cannot find in manual driving, and why.
+
+Chosen by the information matrix of the likelihood and by recovery of known drivers,
+`benchmarks/driver_recovery.py`; docs/fit.md has the numbers.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from costeer.drivers.driver import DriverParameters
+
+
+class Parameter(NamedTuple):
+    """A parameter that the likelihood of the torque is maximised over.
+
+    Attributes:
+        name: Part of the driver and field, as in `vision.lead_time`.
+        unit: Of the value.
+        positive: Whether it is searched on the logarithmic scale.
+        low: Smallest value that is searched.
+        high: Largest value that is searched.
+        tied: Parameters that keep their ratio to this one.
+    """
+
+    name: str
+    unit: str
+    positive: bool
+    low: float
+    high: float
+    tied: tuple[str, ...] = ()
+
+
+STEERING = (
+    Parameter("vision.lead_time", "s", True, 0.1, 15.0),
+    Parameter("vision.near_noise", "rad", True, 1e-4, 0.2, ("vision.motor_noise",)),
+    Parameter("tracking.wander_deviation", "m", True, 0.005, 2.0),
+    Parameter("tracking.lane_bias", "m", False, -1.5, 1.5),
+    Parameter("arm.stiffness", "N·m/rad", True, 0.5, 150.0),
+    Parameter("arm.damping", "N·m·s/rad", True, 0.005, 10.0),
+    Parameter("arm.inertia", "kg·m²", True, 0.002, 2.0),
+)
+"""The identifiable set of the steering, estimated together."""
+
+
+class NotIdentified(NamedTuple):
+    """A parameter that stays at its usual value.
+
+    Attributes:
+        name: Of one or more parameters.
+        reason: Why a recording of manual driving does not tell.
+    """
+
+    name: str
+    reason: str
+
+
+_NO_GUIDANCE = "acts on guidance only; in manual driving nothing depends on it"
+
+NOT_IDENTIFIED = (
+    NotIdentified("reliance.*", _NO_GUIDANCE),
+    NotIdentified(
+        "vision.near_gain, vision.far_gain",
+        "the torque tells the product of gain and lead: the estimates of near_gain and "
+        "lead_time correlate by -0.8 to -0.97, standard errors above 25 %; held at "
+        "the published values",
+    ),
+    NotIdentified(
+        "vision.near_noise over vision.motor_noise",
+        "both noises pass nearly the same filter; their level is found to 2 %, each "
+        "alone only to 20 to 60 %; held at the usual ratio",
+    ),
+    NotIdentified(
+        "vision.lag_time, vision.delay, vision.near_time, vision.noise_time",
+        "standard errors of 50 % to tenfold beside the gains; held at the usual values",
+    ),
+    NotIdentified(
+        "arm.intrinsic_share, arm.lag, arm.holding_gain",
+        "the reflex acts within a tenth of a second of the intrinsic stiffness: the "
+        "share has a standard error of 30 to 70 %, and the holding gain is a tenth of "
+        "the stiffness that it is added to; held at the usual values",
+    ),
+    NotIdentified(
+        "tracking.wander_frequency, tracking.wander_damping",
+        "some five minutes hold few swings of the wander: standard errors of 40 to "
+        "70 %; held at the usual values",
+    ),
+    NotIdentified(
+        "vision.anticipation_time, vision.curvature_gain",
+        "act on a curved path only; lane keeping on a straight road has none",
+    ),
+    NotIdentified(
+        "decision.headway, decision.patience, decision.return_headway",
+        "a decision falls some time before anything is seen of it, and a trial has "
+        "four of each",
+    ),
+)
+"""What a fit leaves at its usual value, whatever the recording."""
+
+
+def value_of(driver: DriverParameters, name: str) -> float:
+    """The value of a parameter by its dotted name."""
+    group, field = name.split(".")
+    return float(getattr(getattr(driver, group), field))
+
+
+def with_value(driver: DriverParameters, name: str, value: float) -> DriverParameters:
+    """The driver with another value of the parameter with this dotted name."""
+    group, field = name.split(".")
+    changed = getattr(driver, group)._replace(**{field: value})
+    return driver._replace(**{group: changed})
+
+
+def with_parameter(
+    driver: DriverParameters, parameter: Parameter, value: float
+) -> DriverParameters:
+    """The driver with another value of a parameter and of those that are tied to it."""
+    ratio = value / value_of(driver, parameter.name) if parameter.tied else 1.0
+    for name in parameter.tied:
+        driver = with_value(driver, name, ratio * value_of(driver, name))
+    return with_value(driver, parameter.name, value)
+
+
+def coordinates(
+    driver: DriverParameters, parameters: Sequence[Parameter]
+) -> NDArray[np.float64]:
+    """Where the driver is on the scale that is searched, shape `(parameter,)`."""
+    values = [value_of(driver, p.name) for p in parameters]
+    return np.array(
+        [
+            np.log(v) if p.positive else v
+            for p, v in zip(parameters, values, strict=True)
+        ]
+    )
+
+
+def natural(parameters: Sequence[Parameter], point: NDArray[np.float64]) -> list[float]:
+    """Values of the parameters at a point of the scale that is searched."""
+    return [
+        float(np.exp(x) if p.positive else x)
+        for p, x in zip(parameters, point, strict=True)
+    ]
+
+
+def driver_at(
+    driver: DriverParameters,
+    parameters: Sequence[Parameter],
+    point: NDArray[np.float64],
+) -> DriverParameters:
+    """The driver with the parameters of a point of the scale that is searched."""
+    for parameter, value in zip(parameters, natural(parameters, point), strict=True):
+        driver = with_parameter(driver, parameter, value)
+    return driver
