@@ -18,6 +18,7 @@ from costeer.validation.arms import (
     TASKS,
     ArmRange,
     ArmTest,
+    Signal,
     Spectrum,
     arm_admittance,
     arm_rows,
@@ -38,6 +39,10 @@ S = 2j * math.pi * FREQUENCIES
 def dozen() -> dict[str, ArmTest]:
     people = [participant_driver(PILOT_SEED, n, 20.0) for n in range(1, 13)]
     return {test.task: test for test in arm_tests(people)}
+
+
+def without_phase(size: Signal) -> Spectrum:
+    return size.astype(np.complex128)
 
 
 def impedance(task: str) -> Spectrum:
@@ -146,8 +151,9 @@ def test_the_band_of_one_arm_is_its_admittance() -> None:
 
 
 def test_what_lies_outside_the_band_is_seen() -> None:
-    soft = ArmTest("tense", FREQUENCIES, 1.01 * PUBLISHED["tense"].high[None] + 0j)
-    hard = ArmTest("tense", FREQUENCIES, 0.99 * PUBLISHED["tense"].low[None] + 0j)
+    limits = PUBLISHED["tense"]
+    soft = ArmTest("tense", FREQUENCIES, without_phase(1.01 * limits.high[None]))
+    hard = ArmTest("tense", FREQUENCIES, without_phase(0.99 * limits.low[None]))
     assert not arms_in_range(soft).any()
     assert not arms_in_range(hard).any()
     assert [row.share_inside for row in arm_rows([soft])] == [0.0] * len(FREQUENCIES)
@@ -155,7 +161,7 @@ def test_what_lies_outside_the_band_is_seen() -> None:
 
 def test_a_row_holds_the_percentiles_of_the_drivers() -> None:
     sizes = np.linspace(1.0, 101.0, 101)[:, None] * np.ones(len(FREQUENCIES))
-    (row, *rest) = arm_rows([ArmTest("relaxed", FREQUENCIES, sizes + 0j)])
+    (row, *rest) = arm_rows([ArmTest("relaxed", FREQUENCIES, without_phase(sizes))])
     assert row.percentiles == pytest.approx((6.0, 51.0, 96.0))
     assert [row.frequency, *(each.frequency for each in rest)] == FREQUENCIES.tolist()
 
