@@ -28,7 +28,7 @@ class CommandGroup(LazyGroup):
     summaries = {  # noqa: RUF012  because Typer builds the class without arguments
         "study": "Run the whole experiment with virtual drivers, then the report.",
         "simulate": "Simulate one trial, write its record and tell what happened.",
-        "drivers": "Draw, plot and validate virtual drivers.",
+        "drivers": "Draw, plot, validate and fit virtual drivers.",
         "train": "Fit the intention network on records.",
         "evaluate": "Judge the intention network on records or a table.",
         "analyse": "Compute driving measures from records or a table.",

@@ -11,6 +11,7 @@ from costeer.base.array import Real
 from costeer.base.packing import leaf_names, packed
 from costeer.drivers.driver import DriverParameters
 from costeer.drivers.population import (
+    PopulationParameters,
     Traits,
     correlation_matrix,
     drawn_traits,
@@ -38,6 +39,50 @@ UNITS = {
     "longitudinal.overtaking_speed": "m/s",
 }
 """Parameters that differ between drivers, and their units."""
+
+LOG_NORMAL, NORMAL = "log-normal", "normal"
+
+
+class Distribution(NamedTuple):
+    """How a parameter is spread; clipped where docs/drivers.md gives a range.
+
+    Attributes:
+        kind: "log-normal" or "normal".
+        spread: Name of its `PopulationParameters`: standard deviation of the
+            logarithm, or of the value.
+    """
+
+    kind: str
+    spread: str
+
+
+DISTRIBUTIONS = {
+    "vision.lead_time": Distribution(NORMAL, "lead_time_spread"),
+    "vision.near_noise": Distribution(LOG_NORMAL, "near_noise_spread"),
+    "vision.motor_noise": Distribution(LOG_NORMAL, "near_noise_spread"),
+    "arm.stiffness": Distribution(LOG_NORMAL, "stiffness_spread"),
+    "arm.inertia": Distribution(LOG_NORMAL, "arm_spread"),
+    "arm.damping": Distribution(LOG_NORMAL, "arm_spread"),
+    "reliance.reliance": Distribution(NORMAL, "reliance_spread"),
+    "reliance.cocontraction": Distribution(LOG_NORMAL, "cocontraction_spread"),
+    "tracking.wander_deviation": Distribution(LOG_NORMAL, "wander_deviation_spread"),
+    "tracking.lane_bias": Distribution(NORMAL, "lane_bias_spread"),
+    "decision.headway": Distribution(LOG_NORMAL, "headway_spread"),
+    "decision.return_headway": Distribution(LOG_NORMAL, "headway_spread"),
+    "decision.change_duration": Distribution(LOG_NORMAL, "duration_spread"),
+    "decision.patience": Distribution(LOG_NORMAL, "patience_spread"),
+    "decision.shoulder_share": Distribution(NORMAL, "shoulder_spread"),
+    "gaze.amplitude": Distribution(LOG_NORMAL, "glance_spread"),
+    "longitudinal.preferred_speed": Distribution(NORMAL, "preferred_speed_spread"),
+    "longitudinal.overtaking_speed": Distribution(NORMAL, "overtaking_speed_spread"),
+}
+"""By the parameter's name."""
+
+
+def distribution_told(name: str) -> str:
+    """Kind and spread of a parameter, as `log-normal, 0.2`."""
+    kind, spread = DISTRIBUTIONS[name]
+    return f"{kind}, {getattr(PopulationParameters(), spread):g}"
 
 
 class Spread(NamedTuple):

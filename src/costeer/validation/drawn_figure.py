@@ -30,7 +30,7 @@ from costeer.study.figures.style import (
 )
 from costeer.study.reporting.numerals import number
 from costeer.validation.drawn import UNITS, drawn_correlations
-from costeer.validation.look import OURS, no_counts
+from costeer.validation.look import OURS, no_counts, num_bins
 
 _COLUMNS = 5
 _ROW_MM = 22.0
@@ -133,9 +133,9 @@ def _histograms(
 
 
 def _histogram(axes: Axes, values: NDArray[np.float64]) -> None:
-    edges = np.linspace(values.min(), values.max(), _BINS + 1)
-    bins = edges if np.ptp(values) > 0.0 else np.array([0.9, 1.1]) * values[0]
-    axes.hist(values, bins=bins.tolist(), color=OURS)
+    bins = num_bins(values.size, _BINS)
+    edges = np.linspace(values.min(), values.max(), bins + 1)
+    axes.hist(values, bins=edges.tolist() if np.ptp(values) > 0.0 else 1, color=OURS)
     axes.axvline(float(np.median(values)), color=INK, linewidth=1.2)
     axes.locator_params(axis="x", nbins=3)
     no_counts(axes)

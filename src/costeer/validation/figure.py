@@ -22,7 +22,7 @@ from costeer.study.figures.style import (
     styled,
     svg_text,
 )
-from costeer.validation.look import HUMAN, OURS, human_range, no_counts
+from costeer.validation.look import HUMAN, OURS, human_range, no_counts, num_bins
 from costeer.validation.manual import (
     Comparison,
     ManualDriving,
@@ -122,7 +122,8 @@ def _distribution(
     human_range(axes, centre.target.low, centre.target.high)
     if shown.size:
         top = max(float(np.percentile(shown, 99.5)), centre.target.high)
-        bins = np.linspace(min(0.0, float(shown.min())), 1.05 * top, _BINS)
+        count = num_bins(shown.size, _BINS)
+        bins = np.linspace(min(0.0, float(shown.min())), 1.05 * top, count)
         axes.hist(
             np.clip(shown, bins[0], bins[-1]), bins=bins.tolist(), color=OURS, zorder=2
         )

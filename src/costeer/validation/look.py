@@ -17,11 +17,18 @@ OURS = "#a8a8a8"
 
 LINE = INK
 
+_LEAST_BINS = 6
+
 
 def human_range(axes: Axes, low: Real, high: Real) -> None:
     """Shade a range of people across the panel; nothing without a range."""
     if math.isfinite(low) and math.isfinite(high):
         axes.axvspan(low, high, color=HUMAN, alpha=0.22, lw=0.0, zorder=0)
+
+
+def num_bins(amount: int, most: int) -> int:
+    """Bins of a histogram of so many values: few where there are few."""
+    return max(_LEAST_BINS, min(most, round(2.0 * math.sqrt(amount))))
 
 
 def no_counts(axes: Axes) -> None:

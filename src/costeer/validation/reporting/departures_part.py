@@ -17,6 +17,7 @@ from costeer.study.reporting.numerals import count, number
 from costeer.study.reporting.tables import Table
 from costeer.validation.departures import Departures, DepartureSummary
 from costeer.validation.look import OURS
+from costeer.validation.reporting.words import short
 
 NAME = "departures"
 
@@ -32,18 +33,18 @@ def departures_table(told: DepartureSummary) -> Table:
     rows = (
         ("Driven", "km", number(told.kilometres, 0)),
         ("Departures counted", "–", count(told.num_departures)),
-        ("Departures counted", "1/km", number(told.counted_per_km, 4)),
-        ("95 % interval (Garwood)", "1/km", f"{number(low, 4)} to {number(high, 4)}"),
+        ("Departures counted", "1/km", short(told.counted_per_km, 2)),
+        ("95 % interval (Garwood)", "1/km", f"{short(low, 2)} to {short(high, 2)}"),
         ("Accepted", "1/km", f"at most {number(ALLOWED, 2)}"),
         (
             "Gaussian lane position of each driver, mean",
             "1/km",
-            number(told.gaussian_per_km, 4),
+            short(told.gaussian_per_km, 2),
         ),
         (
             "Gaussian lane position of the usual driver",
             "1/km",
-            number(told.usual_per_km, 4),
+            short(told.usual_per_km, 2),
         ),
     )
     return Table(
@@ -81,7 +82,7 @@ def draw_departures(found: Departures, told: DepartureSummary) -> Exhibit:
         "same mean, SDLP and lateral speed would give (not below 10⁻⁶). Line and "
         "grey ground: departures counted over all drivers with their 95 % interval.",
         description="Expected departures of each driver rise steeply with SDLP; "
-        f"counted over all drivers: {number(told.counted_per_km, 4)} per km, expected "
-        f"on average {number(told.gaussian_per_km, 4)} per km.",
+        f"counted over all drivers: {short(told.counted_per_km, 2)} per km, expected "
+        f"on average {short(told.gaussian_per_km, 2)} per km.",
         figure=figure,
     )

@@ -45,6 +45,7 @@ _SHOWN = (0.5, 99.5)
 """Percentiles between which distributions are shown."""
 
 _NORMAL_95 = 1.96
+_TICKS = (0.05, 0.1, 0.2, 0.5, 1.0)
 
 
 class Group(NamedTuple):
@@ -113,11 +114,14 @@ def draw_people(comparisons: Sequence[RealComparison]) -> Iterator[Exhibit]:
             )
 
 
-_CAPTION = (
-    "Share of values up to the one below, or, of shares, the share with its 95 % "
-    "interval (Wilson). Green: people; black: virtual drivers in manual driving; "
-    "green ground: the range that the drivers' median or share is held to; green "
-    "crosses: published 10, 50 and 90 % where the recordings are absent."
+_CAPTION = "Green: people; black: virtual drivers; green ground: accepted range."
+
+HOW_TO_READ = (
+    "In the figures a curve is the share of values up to the one below, its dot the "
+    "median; where the quantity is itself a share, the dot is that share and the line "
+    "its 95 % interval (Wilson). Green is people, black the virtual drivers in manual "
+    "driving, the green ground the range that the drivers' median or share is held "
+    "to; green crosses are published 10, 50 and 90 % where recordings are absent."
 )
 
 
@@ -263,6 +267,8 @@ def draw_spectra(spectra: Spectra) -> Exhibit:
                 color=colour,
                 label=label,
             )
+    axes.set_xticks(_TICKS, [f"{tick:g}" for tick in _TICKS])
+    axes.minorticks_off()
     axes.set_xlabel("Frequency [Hz]")
     axes.set_ylabel("Power of lane position [m²/Hz]")
     axes.grid(color=FAINT, alpha=0.25, linewidth=0.4)

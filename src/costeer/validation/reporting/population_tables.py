@@ -5,7 +5,7 @@ from __future__ import annotations
 from costeer.drivers.population import FACTORS
 from costeer.study.reporting.numerals import signed
 from costeer.study.reporting.tables import Table
-from costeer.validation.drawn import spreads
+from costeer.validation.drawn import distribution_told, spreads
 from costeer.validation.drawn_figure import Population, spoken
 from costeer.validation.reporting.target_tables import wrapped
 from costeer.validation.reporting.words import short
@@ -16,18 +16,21 @@ def parameters_table(population: Population) -> Table:
     return Table(
         name="parameters",
         title="What differs between the drivers",
-        note="Percentiles over these drivers, SI units. All other parameters are the "
+        note="The number of a distribution is the standard deviation, of the "
+        "logarithm if it is log-normal; some are clipped. Percentiles over these "
+        "drivers, SI units. All other parameters are the "
         "same for all drivers; docs/drivers.md has them with their sources.",
-        header=("Parameter", "Unit", "5 %", "Median", "95 %"),
+        header=("Parameter", "Unit", "Distribution", "5 %", "Median", "95 %"),
         rows=tuple(
             (
                 spoken(each.parameter).replace(".", ": "),
                 "–" if each.unit == "-" else each.unit,
+                distribution_told(each.parameter),
                 *(short(value) for value in (each.low, each.median, each.high)),
             )
             for each in spreads(population.drivers)
         ),
-        num_labels=2,
+        num_labels=3,
     )
 
 

@@ -11,7 +11,12 @@ from costeer.study.reporting.numerals import NOTHING, count, number, percent
 from costeer.study.reporting.tables import Table
 from costeer.validation.arms import ArmRow, ArmTest, arm_rows
 from costeer.validation.reporting.words import short
-from costeer.validation.resistance import QUANTITIES, Resistance, resistance_rows
+from costeer.validation.resistance import (
+    QUANTITIES,
+    Resistance,
+    ResistanceRow,
+    resistance_rows,
+)
 from costeer.validation.stability import (
     Stability,
     StabilityBounds,
@@ -46,19 +51,9 @@ def _arm_row(row: ArmRow) -> tuple[str, ...]:
 
 def resistance_table(found: Sequence[Resistance]) -> Table:
     """Return what drivers did against lane changes that they did not want."""
-    units = dict(QUANTITIES.values())
-    rows = resistance_rows(found)
-    names = list(dict.fromkeys(row.quantity for row in rows))
-    cells: dict[tuple[float, str], list[str]] = {}
-    for row in rows:
-        low, middle, high = row.percentiles
-        share = units[row.quantity] == "-" and "gain" not in row.quantity
-        text = (
-            percent(row.mean, 1.0)
-            if share
-            else f"{short(middle)}\n{_ends(low, high)}".rstrip()
-        )
-        cells.setdefault((row.change_duration, row.system), []).append(text)
+    cells: dict[tuple[str, float], list[str]] = {}
+    for row in resistance_rows(found):
+        cells.setdefault((row.system, row.change_duration), []).append(_told(row))
     drivers = len(found[0].deviation)
     return Table(
         name="resistance",
@@ -66,19 +61,32 @@ def resistance_table(found: Sequence[Resistance]) -> Table:
         note=f"Strong guidance, {drivers} pilot drivers, four trials each, on an empty "
         "road. Medians over drivers, below them 5 and 95 %; shares of all trials. "
         "Never yields: a system whose verdict is always consistent.",
-        header=("System", "Duration [s]", *(_titled(n, units[n]) for n in names)),
+        header=(
+            "System",
+            "Duration [s]",
+            *(_titled(quantity, unit) for quantity, unit in QUANTITIES.values()),
+        ),
         rows=tuple(
             (system, f"{duration:g}", *texts)
-            for (duration, system), texts in sorted(
-                cells.items(), key=lambda item: (item[0][1], item[0][0])
-            )
+            for (system, duration), texts in sorted(cells.items())
         ),
     )
 
 
+_SHARES = {QUANTITIES[name][0] for name in ("overruled", "crossed_line")}
+
+
+def _told(row: ResistanceRow) -> str:
+    """Median and ends over the drivers, or the share of all trials."""
+    if row.quantity in _SHARES:
+        return number(100.0 * row.mean, 1)
+    low, middle, high = row.percentiles
+    return f"{short(middle)}\n{_ends(low, high)}".rstrip()
+
+
 def _titled(quantity: str, unit: str) -> str:
-    text = quantity[0].upper() + quantity[1:]
-    return f"{text} [{unit if unit != '-' else '–'}]"
+    shown = "%" if quantity in _SHARES else unit.replace("-", NOTHING)
+    return f"{quantity[0].upper()}{quantity[1:]} [{shown}]"
 
 
 def _ends(low: float, high: float) -> str:

@@ -78,7 +78,7 @@ def _interval(spread: TargetSpread) -> str:
 
 def wrapped(text: str, width: int = _WRAP) -> str:
     """Text in lines of a cell."""
-    return "\n".join(textwrap.wrap(text, width))
+    return "\n".join(textwrap.wrap(text, width, break_on_hyphens=False))
 
 
 def overview_table(quantities: Sequence[Quantity]) -> Table:

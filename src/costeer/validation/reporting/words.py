@@ -29,7 +29,7 @@ def short(quantity: Real, digits: int = _DIGITS) -> str:
         return NOTHING
     if quantity == 0.0:
         return "0"
-    size = math.floor(math.log10(abs(quantity)))
+    size = int(f"{quantity:.{digits - 1}e}".partition("e")[2])
     return number(quantity, min(max(0, digits - 1 - size), _MOST_DECIMALS))
 
 
