@@ -25,7 +25,7 @@ class ConsistencyParameters(NamedTuple):
             paper, none; a literal Table III can chatter when a torque crosses zero.
     """
 
-    inconsistency_threshold: Real = 0.035
+    inconsistency_threshold: Real = 0.025
     hold_time: Real = 0.0
 
 

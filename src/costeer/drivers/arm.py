@@ -27,7 +27,7 @@ class ArmParameters(NamedTuple):
         stiffness: K_t, torque per lasting deviation from the intended angle
             [N·m/rad]. Source: Saleh et al. (2013), 8 to 20.
         intrinsic_share: Share of K_t that relaxed muscles give at once; the reflex
-            gives the rest [-]. Source: assumed, 4 N·m/rad for a relaxed arm.
+            gives the rest [-]. Source: assumed, 5 N·m/rad for a relaxed arm.
         lag: Neuromuscular time constant [s]. Source: Saleh et al. (2013), 0.1.
         reflex_delay: Wheel to reflex, before the lag [s]. Source: assumed; Pick and
             Cole (2008) have 0.04.
@@ -38,11 +38,11 @@ class ArmParameters(NamedTuple):
 
     holding_gain: Real = 0.75
     stiffness: Real = 12.0
-    intrinsic_share: Real = 0.35
+    intrinsic_share: Real = 0.4
     lag: Real = 0.1
     reflex_delay: Real = 0.04
     inertia: Real = 0.09
-    damping: Real = 0.5
+    damping: Real = 1.0
     hands_on: Real = 1.0
 
 
