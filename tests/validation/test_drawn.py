@@ -2,14 +2,35 @@
 
 from __future__ import annotations
 
+from functools import cache
+
 import numpy as np
+import pytest
 
 from costeer.base.packing import leaf_names, packed
 from costeer.drivers.driver import DriverParameters
-from costeer.drivers.population import participant_driver
-from costeer.validation.drawn import UNITS, drawn_drivers, spreads
+from costeer.drivers.population import (
+    PopulationParameters,
+    Traits,
+    correlation_matrix,
+    participant_driver,
+)
+from costeer.validation.drawn import (
+    DISTRIBUTIONS,
+    LOG_NORMAL,
+    UNITS,
+    drawn_correlations,
+    drawn_drivers,
+    spreads,
+    trait_pairs,
+)
 
 SPEED = 70.0 / 3.6
+
+
+@cache
+def many() -> list[dict[str, float]]:
+    return drawn_drivers(1, 1500, SPEED)
 
 
 def test_every_parameter_that_differs_is_listed() -> None:
@@ -34,3 +55,34 @@ def test_a_listed_value_is_the_drivers_own() -> None:
 def test_percentiles_rise() -> None:
     for spread in spreads(drawn_drivers(1, 50, SPEED)):
         assert spread.low < spread.median < spread.high
+
+
+def test_every_parameter_that_differs_has_its_distribution() -> None:
+    assert set(DISTRIBUTIONS) == set(UNITS)
+
+
+@pytest.mark.parametrize("name", UNITS)
+def test_a_parameter_is_spread_as_its_distribution_says(name: str) -> None:
+    kind, spread = DISTRIBUTIONS[name]
+    values = np.array([driver[name] for driver in many()])
+    shown = np.log(values) if kind == LOG_NORMAL else values
+    low, high = np.percentile(shown, [25.0, 75.0])
+    # Quartiles are inside every clip; 1500 drivers give their distance to 5 %.
+    told = getattr(PopulationParameters(), spread)
+    assert (high - low) / 1.349 == pytest.approx(told, rel=0.12)
+
+
+def test_traits_without_a_common_factor_make_no_pair() -> None:
+    pairs = {(pair.first, pair.second): pair.correlation for pair in trait_pairs()}
+    assert not any("noise" in pair for pair in pairs)
+    sizes = [abs(correlation) for correlation in pairs.values()]
+    assert sizes == sorted(sizes, reverse=True)
+    assert len(pairs) == np.count_nonzero(np.tril(correlation_matrix(), -1))
+
+
+def test_drawn_traits_are_correlated_as_given() -> None:
+    found = drawn_correlations(1, 1500)
+    # Standard error of a correlation of 1500: 0.026; 120 pairs, so five of it.
+    assert np.abs(found - correlation_matrix()).max() < 0.13
+    assert np.isnan(drawn_correlations(1, 2)).all()
+    assert found.shape == (len(Traits._fields),) * 2

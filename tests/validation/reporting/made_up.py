@@ -60,47 +60,50 @@ def people(there: bool = True) -> list[RealComparison]:
     """A median that is met, a share that is missed, one that is only reported."""
     some = np.linspace(4.0, 8.0, 9) if there else np.empty(0)
     shares = 100.0 * (np.arange(20) < 15) if there else np.empty(0)
-    return [
-        RealComparison(
-            name="R1",
-            quantity="duration",
-            unit="s",
-            source="Films (ngsim_lc)",
-            people=some,
-            drivers=np.linspace(4.5, 7.5, 7),
-            published=(4.2, 5.6, 7.7),
-            low=5.0,
-            high=6.3,
-            statistic="median",
-            reason="Dense traffic.",
-        ),
-        RealComparison(
-            name="R2",
-            quantity="glances",
-            unit="%",
-            source="Heads (brain4cars_head)",
-            people=shares,
-            drivers=100.0 * (np.arange(20) < 14),
-            published=(NOTHING, 84.0, NOTHING),
-            low=80.0,
-            high=90.0,
-            statistic="share",
-            reason="",
-        ),
-        RealComparison(
-            name="R3",
-            quantity="torque",
-            unit="N·m",
-            source="A set that no figure knows",
-            people=some,
-            drivers=np.array([0.3]),
-            published=(NOTHING, NOTHING, NOTHING),
-            low=NOTHING,
-            high=NOTHING,
-            statistic="median",
-            reason="",
-        ),
-    ]
+    usual = RealComparison(
+        name="R1",
+        quantity="duration",
+        unit="s",
+        source="Films (ngsim_lc)",
+        people=some,
+        drivers=np.linspace(4.5, 7.5, 7),
+        published=(4.2, 5.6, 7.7),
+        low=5.0,
+        high=6.3,
+        statistic="median",
+        reason="Dense traffic.",
+    )
+    return [usual, _share(usual, shares), _reported(usual)]
+
+
+def _share(usual: RealComparison, shares: np.ndarray) -> RealComparison:
+    """14 of 20 drivers glance, where 80 to 90 % should."""
+    return usual._replace(
+        name="R2",
+        quantity="glances",
+        unit="%",
+        source="Heads (brain4cars_head)",
+        people=shares,
+        drivers=100.0 * (np.arange(20) < 14),
+        published=(NOTHING, 84.0, NOTHING),
+        low=80.0,
+        high=90.0,
+        statistic="share",
+    )
+
+
+def _reported(usual: RealComparison) -> RealComparison:
+    """A quantity without a range, with one value of drivers."""
+    return usual._replace(
+        name="R3",
+        quantity="torque",
+        unit="N·m",
+        source="A set that no figure knows",
+        drivers=np.array([0.3]),
+        published=(NOTHING, NOTHING, NOTHING),
+        low=NOTHING,
+        high=NOTHING,
+    )
 
 
 def arms() -> list[ArmTest]:

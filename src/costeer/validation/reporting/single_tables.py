@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from costeer.study.reporting.numerals import NOTHING, count, number, percent
+from costeer.study.reporting.numerals import NOTHING, number, percent, plural
 from costeer.study.reporting.tables import Table
 from costeer.validation.arms import ArmRow, ArmTest, arm_rows
 from costeer.validation.reporting.words import short
@@ -94,51 +95,34 @@ def _ends(low: float, high: float) -> str:
     return "" if NOTHING in text else text
 
 
+class _Look(NamedTuple):
+    """One row of the table of stability.
+
+    Attributes:
+        title: With the unit.
+        values: Of all drivers, shape `(driver,)`.
+        bound: In words.
+        beyond: Who is beyond it; None without a bound.
+        digits: Significant ones.
+    """
+
+    title: str
+    values: NDArray[np.float64]
+    bound: str = NOTHING
+    beyond: NDArray[np.bool_] | None = None
+    digits: int = 3
+
+
 def stability_table(found: Stability) -> Table:
     """Return percentiles of damping and drift, bounds, and who is beyond them."""
-    bounds = StabilityBounds()
-    rows = (
-        _stable_row(
-            "Damping ratio of the slowest-decaying swing [–]",
-            found.damping_ratio,
-            f"at least {bounds.damping_ratio:g}",
-            found.damping_ratio < bounds.damping_ratio,
-        ),
-        _stable_row(
-            "Largest eigenvalue of a control step [–]",
-            found.largest_modulus,
-            "below 1",
-            found.largest_modulus >= 1.0,
-            5,
-        ),
-        _stable_row(
-            "A swing over the one before it [–]",
-            found.swing_ratio,
-            f"at most {bounds.swing_ratio:g}",
-            found.swing_ratio > bounds.swing_ratio,
-        ),
-        _stable_row(
-            "0.5 m offset within 0.1 m after [s]",
-            found.settling_time,
-            f"at most {bounds.settling_time:g}",
-            found.settling_time > bounds.settling_time,
-        ),
-        _stable_row("Hunting with dry friction [m]", found.hunting, NOTHING, None),
-        _stable_row(
-            "Least distance of a wheel from the road's edge lines [m]",
-            found.edge_margin,
-            f"at least {number(-bounds.edge_strip, 1)}",
-            leaves_road(found, bounds),
-        ),
-    )
-    num_drivers = len(found.damping_ratio)
+    swinging, gone = int(oscillates(found).sum()), int(leaves_road(found).sum())
     return Table(
         name="stability",
-        title=f"Stability of {num_drivers} drivers",
+        title=f"Stability of {plural(len(found.damping_ratio), 'driver')}",
         note=f"{found.speed * 3.6:.0f} km/h, manual. The first two rows: the linear "
         "loop of driver and car. Then runs without noise after an offset; the last "
-        f"row: a manual trial each. {int(oscillates(found).sum())} drivers oscillate, "
-        f"{int(leaves_road(found).sum())} leave the road.",
+        f"row: a manual trial each. {plural(swinging, 'driver')} oscillate, "
+        f"{gone} leave the road.",
         header=(
             "Quantity [unit]",
             "Smallest",
@@ -149,22 +133,54 @@ def stability_table(found: Stability) -> Table:
             "Bound",
             "Beyond",
         ),
-        rows=rows,
+        rows=tuple(map(_stable_row, _looks(found, StabilityBounds()))),
     )
 
 
-def _stable_row(
-    title: str,
-    values: NDArray[np.float64],
-    bound: str,
-    beyond: NDArray[np.bool_] | None,
-    digits: int = 3,
-) -> tuple[str, ...]:
+def _looks(found: Stability, bounds: StabilityBounds) -> list[_Look]:
+    return [
+        _Look(
+            "Least damping ratio of a swing [–]",
+            found.damping_ratio,
+            f"at least {bounds.damping_ratio:g}",
+            found.damping_ratio < bounds.damping_ratio,
+        ),
+        _Look(
+            "Largest eigenvalue of a control step [–]",
+            found.largest_modulus,
+            "below 1",
+            found.largest_modulus >= 1.0,
+            digits=5,
+        ),
+        _Look(
+            "A swing over the one before it [–]",
+            found.swing_ratio,
+            f"at most {bounds.swing_ratio:g}",
+            found.swing_ratio > bounds.swing_ratio,
+        ),
+        _Look(
+            "0.5 m offset within 0.1 m after [s]",
+            found.settling_time,
+            f"at most {bounds.settling_time:g}",
+            found.settling_time > bounds.settling_time,
+        ),
+        _Look("Hunting with dry friction [m]", found.hunting),
+        _Look(
+            "Least distance of a wheel from the road's edge lines [m]",
+            found.edge_margin,
+            f"at least {number(-bounds.edge_strip, 1)}",
+            leaves_road(found, bounds),
+        ),
+    ]
+
+
+def _stable_row(look: _Look) -> tuple[str, ...]:
+    values = look.values
     low, middle, high = np.percentile(values, _PERCENTILES, method="nearest")
     points = (values.min(), low, middle, high, values.max())
     return (
-        title,
-        *(short(float(each), digits) for each in points),
-        bound,
-        NOTHING if beyond is None else count(float(np.count_nonzero(beyond))),
+        look.title,
+        *(short(float(each), look.digits) for each in points),
+        look.bound,
+        NOTHING if look.beyond is None else str(np.count_nonzero(look.beyond)),
     )
