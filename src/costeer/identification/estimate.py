@@ -37,6 +37,8 @@ _CLOSE_ENOUGH = 1e-2
 """Largest gradient per standard error at a maximum."""
 _NEARLY = 0.3
 """The same at a maximum that rounding blurs."""
+_SINGULAR = 1e-7
+"""Smallest eigenvalue of a scaled information that is no rounding."""
 _OPTIONS = {
     "gtol": _CLOSE_ENOUGH,
     "max_trust_radius": 1e3,
@@ -50,14 +52,13 @@ class Maximum(NamedTuple):
 
     Attributes:
         point: Shape `(parameter,)`.
-        covariance: Inverse of the observed information, shape `(parameter, parameter)`;
-            NaN where the likelihood is not curved.
+        information: Observed, shape `(parameter, parameter)`.
         log_likelihood: There [-].
         converged: Whether the gradient vanishes there.
     """
 
     point: Vector
-    covariance: Vector
+    information: Vector
     log_likelihood: float
     converged: bool
 
@@ -128,6 +129,20 @@ class _Objective:
         return self.slopes(point).curvature
 
 
+def information(
+    driver: DriverParameters, parameters: Sequence[Parameter], evidence: Evidence
+) -> Vector:
+    """Expected information on the searched scale, shape `(parameter, parameter)`.
+
+    Args:
+        driver: Where.
+        parameters: On what.
+        evidence: Recording and stretches.
+    """
+    objective = _Objective(driver, parameters, evidence)
+    return objective.curvature(coordinates(driver, parameters))
+
+
 def alone(
     start: DriverParameters, parameters: Sequence[Parameter], evidence: Evidence
 ) -> Vector:
@@ -135,10 +150,10 @@ def alone(
 
     Infinite where nothing in the recording depends on the parameter.
     """
-    objective = _Objective(start, parameters, evidence)
-    information = np.diag(objective.curvature(coordinates(start, parameters)))
     with np.errstate(divide="ignore"):
-        return np.asarray(1.0 / np.sqrt(information))
+        return np.asarray(
+            1.0 / np.sqrt(np.diag(information(start, parameters, evidence)))
+        )
 
 
 def maximise(
@@ -164,20 +179,38 @@ def maximise(
         options=_OPTIONS,
     )
     point = np.asarray(found.x * scale)
-    information = observed_information(objective, point)
     return Maximum(
         point=point,
-        covariance=_inverse(information),
+        information=observed_information(objective, point),
         log_likelihood=-float(found.fun),
         converged=bool(np.abs(found.jac).max() < _NEARLY),
     )
 
 
-def _inverse(information: Vector) -> Vector:
-    """Covariance; NaN throughout where the information is not positive."""
-    if np.linalg.eigvalsh(information).min() <= 0.0:
-        return np.full_like(information, np.nan)
-    return np.asarray(np.linalg.inv(information))
+class Weakest(NamedTuple):
+    """A combination of parameters that the likelihood hardly depends on.
+
+    Attributes:
+        first: Place of the parameter with the largest part in it.
+        second: Of that with the next; the same if there is only one parameter.
+    """
+
+    first: int
+    second: int
+
+
+def deviations(matrix: Vector) -> Vector | Weakest:
+    """Standard errors, shape `(parameter,)`, or what an information leaves open.
+
+    Args:
+        matrix: Observed information, shape `(parameter, parameter)`.
+    """
+    size = np.sqrt(np.abs(np.diag(matrix)))
+    values, vectors = np.linalg.eigh(matrix / np.outer(size, size))
+    if values[0] > _SINGULAR:
+        return np.asarray(np.sqrt(np.diag(np.linalg.inv(matrix))))
+    order = np.argsort(-np.abs(vectors[:, 0]))
+    return Weakest(first=int(order[0]), second=int(order[min(1, len(order) - 1)]))
 
 
 def observed_information(objective: _Objective, point: Vector) -> Vector:

@@ -60,34 +60,31 @@ class NotIdentified(NamedTuple):
 
 
 _NO_GUIDANCE = "acts on guidance only; in manual driving nothing depends on it"
+_HELD = "held at the usual value: estimated as well, it would have a standard error of"
 
 NOT_IDENTIFIED = (
     NotIdentified("reliance.*", _NO_GUIDANCE),
     NotIdentified(
-        "vision.near_gain, vision.far_gain",
-        "the torque tells the product of gain and lead: the estimates of near_gain and "
-        "lead_time correlate by -0.8 to -0.97, standard errors above 25 %; held at "
-        "the published values",
+        "vision.near_gain, vision.far_gain, vision.lag_time",
+        f"{_HELD} 33, 19 and 51 % and correlate with lead_time or near_noise by 0.93 "
+        "to 0.97; the torque tells little more than gain times lead",
     ),
     NotIdentified(
-        "vision.near_noise over vision.motor_noise",
-        "both noises pass nearly the same filter; their level is found to 2 %, each "
-        "alone only to 20 to 60 %; held at the usual ratio",
+        "vision.motor_noise by itself",
+        f"{_HELD} 33 % and correlate with near_noise by -0.86, as both pass nearly "
+        "the same filter; kept in the usual ratio to near_noise",
+    ),
+    NotIdentified("vision.delay", f"{_HELD} 135 %"),
+    NotIdentified(
+        "arm.holding_gain, arm.intrinsic_share",
+        f"{_HELD} 43 and 23 %: the reflex acts within a tenth of a second of the "
+        "intrinsic stiffness, and the holding torque adds a tenth to the stiffness",
     ),
     NotIdentified(
-        "vision.lag_time, vision.delay, vision.near_time, vision.noise_time",
-        "standard errors of 50 % to tenfold beside the gains; held at the usual values",
-    ),
-    NotIdentified(
-        "arm.intrinsic_share, arm.lag, arm.holding_gain",
-        "the reflex acts within a tenth of a second of the intrinsic stiffness: the "
-        "share has a standard error of 30 to 70 %, and the holding gain is a tenth of "
-        "the stiffness that it is added to; held at the usual values",
-    ),
-    NotIdentified(
-        "tracking.wander_frequency, tracking.wander_damping",
-        "some five minutes hold few swings of the wander: standard errors of 40 to "
-        "70 %; held at the usual values",
+        "vision.near_time, vision.noise_time, arm.lag, tracking.wander_frequency, "
+        "tracking.wander_damping",
+        f"{_HELD} 4 to 30 % each, but not all at once: then the information has a "
+        "condition number above 1e7",
     ),
     NotIdentified(
         "vision.anticipation_time, vision.curvature_gain",
@@ -99,7 +96,8 @@ NOT_IDENTIFIED = (
         "four of each",
     ),
 )
-"""What a fit leaves at its usual value, whatever the recording."""
+"""What a fit leaves at its usual value, whatever the recording; the numbers are the
+medians of `benchmarks/driver_recovery.py`."""
 
 
 def value_of(driver: DriverParameters, name: str) -> float:

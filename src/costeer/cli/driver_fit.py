@@ -1,0 +1,149 @@
+"""`costeer drivers --fit FILE`: a driver fitted to a recording of manual driving."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import typer
+
+from costeer.cli.console import note, print_table, progress
+
+if TYPE_CHECKING:
+    from costeer.identification.fit import DriverFit
+    from costeer.validation.fitted import Check
+
+
+def show_fit(path: Path, as_json: bool, jobs: int | None, plot: Path | None) -> None:
+    """Fit a driver, check the fit by simulation, print and draw both.
+
+    Args:
+        path: Trial record, CSV or Parquet.
+        as_json: Print JSON instead of tables.
+        jobs: Trials at a time; as many as processors if None.
+        plot: Draw the estimates into this SVG, if given.
+
+    Raises:
+        ValueError: If the recording cannot be fitted.
+        OSError: If a file cannot be read or written.
+    """
+    from costeer.identification.fit import fit_driver
+    from costeer.loop.record import read_recording
+    from costeer.study.jobs import default_jobs
+    from costeer.validation.fitted import REPEATS, check_fit
+
+    _check_plot(plot)
+    record = read_recording(path)
+    try:
+        fit = fit_driver(record)
+    except ValueError as error:
+        raise ValueError(f"{path}: {error}") from error
+    try:
+        with progress("check by simulation", REPEATS) as advance:
+            checks = check_fit(record, fit, jobs or default_jobs(), advance=advance)
+    except ValueError as error:
+        note(f"not checked: {error}")
+        checks = []
+    if plot is not None:
+        _draw(plot, fit)
+    if as_json:
+        _print_json(path, fit, checks)
+    else:
+        _print_tables(path, fit, checks)
+
+
+def _check_plot(plot: Path | None) -> None:
+    """Refuse a name that is no SVG before the fit.
+
+    Raises:
+        ValueError: If it does not end in .svg, or is a folder.
+    """
+    if plot is not None and (plot.suffix != ".svg" or plot.is_dir()):
+        raise ValueError(f"{plot} is no SVG; give --plot a name that ends in .svg")
+
+
+def _draw(plot: Path, fit: DriverFit) -> None:
+    from costeer.study.folder import write_text
+    from costeer.validation.fitted_figure import fit_svg
+
+    plot.parent.mkdir(parents=True, exist_ok=True)
+    write_text(plot, fit_svg(fit))
+    note(f"wrote {plot}")
+
+
+def _print_tables(path: Path, fit: DriverFit, checks: list[Check]) -> None:
+    print_table(
+        ["parameter", "unit", "estimate", "95 % from", "to", "how"],
+        [
+            [e.name, e.unit, *(f"{v:.4g}" for v in (e.value, e.low, e.high)), e.how]
+            for e in fit.estimates
+        ],
+        f"Driver of {path}: {fit.lane_keeping:.0f} s of lane keeping, "
+        f"{fit.num_changes} lane changes",
+    )
+    print_table(
+        ["not identified", "why"], [[n.name, n.reason] for n in fit.not_identified]
+    )
+    compared = [c for c in checks if not c.reason]
+    if compared:
+        print_table(
+            ["measure", "unit", "recorded", "simulated", "sd", ""],
+            [
+                [
+                    c.measure,
+                    c.unit,
+                    *(f"{v:.3g}" for v in (c.recorded, c.mean, c.deviation)),
+                    "more than 2 sd off" if c.flagged else "",
+                ]
+                for c in compared
+            ],
+            "The fitted driver in the same trial, with other noise",
+        )
+    for check in checks:
+        if check.reason:
+            typer.echo(f"not compared: {check.measure}: {check.reason}")
+    for line in _notes(fit):
+        note(f"note: {line}")
+
+
+def _notes(fit: DriverFit) -> list[str]:
+    """What the reader should know before trusting the numbers."""
+    from costeer.identification.fit import WHITE
+
+    lines = list(fit.notes)
+    if fit.whiteness > WHITE:
+        lines.append(
+            f"prediction errors are correlated by up to {fit.whiteness:.2f}, those of "
+            f"a driver of this model by less than {WHITE:g}: the model does not "
+            "describe this driver well, and the intervals are too narrow"
+        )
+    return lines
+
+
+def _print_json(path: Path, fit: DriverFit, checks: list[Check]) -> None:
+    import json
+
+    from costeer.drivers.population import POPULATION_VERSION
+
+    answer = {
+        "file": str(path),
+        "population": POPULATION_VERSION,
+        "lane_keeping": fit.lane_keeping,
+        "num_changes": fit.num_changes,
+        "prediction_error": fit.prediction_error,
+        "whiteness": fit.whiteness,
+        "estimates": [e._asdict() for e in fit.estimates],
+        "not_identified": [n._asdict() for n in fit.not_identified],
+        "checks": [_plain(c) for c in checks],
+        "notes": _notes(fit),
+    }
+    typer.echo(json.dumps(answer, indent=2, ensure_ascii=False))
+
+
+def _plain(check: Check) -> dict[str, object]:
+    """A check in JSON's own types: it has no NaN."""
+    return {
+        name: None if isinstance(value, float) and math.isnan(value) else value
+        for name, value in check._asdict().items()
+    }

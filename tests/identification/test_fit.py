@@ -1,0 +1,151 @@
+"""Known drivers come back from their recordings."""
+
+from __future__ import annotations
+
+import math
+from functools import cache
+
+import pytest
+
+from costeer.identification.fit import WHITE, DriverFit, Estimate, fit_driver
+from costeer.identification.parameters import STEERING, value_of
+from costeer.loop.columns import TrialRecord
+from tests.identification.driving import (
+    cut,
+    recorded,
+    recorded_with,
+    true_driver,
+    with_columns,
+)
+
+ODD = (
+    "lateral_position",
+    "yaw_angle",
+    "yaw_rate",
+    "lateral_velocity",
+    "lateral_acceleration",
+    "steering_wheel_angle",
+    "steering_wheel_rate",
+    "driver_torque",
+    "head_yaw",
+)
+"""Columns that change their sign when left and right are swapped."""
+
+
+@cache
+def fit_of(participant: int) -> DriverFit:
+    return fit_driver(recorded(participant))
+
+
+def by_name(fit: DriverFit) -> dict[str, Estimate]:
+    return {estimate.name: estimate for estimate in fit.estimates}
+
+
+@pytest.mark.parametrize("participant", [1, 2, 3])
+def test_the_truth_is_near_every_estimate(participant: int) -> None:
+    truth = true_driver(participant)
+    for estimate in fit_of(participant).estimates:
+        value = value_of(truth, estimate.name)
+        # Twice the interval's half-width, four standard errors: one of 16,000 normal
+        # estimates is outside. Whether 95 % hold is for the benchmark to count.
+        room = estimate.high - estimate.low
+        middle = (estimate.high + estimate.low) / 2.0
+        assert abs(value - middle) < room, estimate
+
+
+def test_most_intervals_of_three_drivers_hold_the_truth() -> None:
+    inside = [
+        e.low <= value_of(true_driver(n), e.name) <= e.high
+        for n in (1, 2, 3)
+        for e in fit_of(n).estimates
+    ]
+    # Of 33 intervals at 95 %, 27 or more hold in 99.8 of 100 samples.
+    assert len(inside) == 33
+    assert sum(inside) >= 27
+
+
+@pytest.mark.slow
+def test_twenty_drivers_are_in_their_intervals() -> None:
+    drivers = range(10, 30)
+    fits = {n: fit_driver(recorded(n)) for n in drivers}
+    for name in by_name(fits[10]):
+        inside = [
+            e.low <= value_of(true_driver(n), name) <= e.high
+            for n in drivers
+            for e in fits[n].estimates
+            if e.name == name
+        ]
+        # At 95 %, 16 or more of 20 hold in 99.7 of 100 samples.
+        assert sum(inside) >= 16, name
+
+
+def test_prediction_errors_of_the_fitted_driver_are_white() -> None:
+    assert all(fit_of(n).whiteness < WHITE for n in (1, 2, 3))
+    assert all(fit_of(n).notes == () for n in (1, 2, 3))
+
+
+def test_the_fitted_driver_has_the_estimates_and_else_the_usual_values() -> None:
+    fit = fit_of(1)
+    for estimate in fit.estimates:
+        assert value_of(fit.driver, estimate.name) == estimate.value
+    assert value_of(fit.driver, "reliance.reliance") == 0.5
+
+
+def mirrored(record: TrialRecord) -> TrialRecord:
+    """The same drive with left and right swapped; lanes are 3.5 m apart."""
+    swapped = {name: -record.columns[name] for name in ODD}
+    swapped["lateral_position"] = -3.5 - record.columns["lateral_position"]
+    return with_columns(record, **swapped)
+
+
+def test_a_mirrored_recording_mirrors_the_bias_and_nothing_else() -> None:
+    one, other = by_name(fit_of(1)), by_name(fit_driver(mirrored(recorded(1))))
+    assert one.keys() == other.keys()
+    for name, estimate in one.items():
+        found = other[name]
+        if name == "tracking.lane_bias":
+            found = found._replace(value=-found.value, low=-found.high, high=-found.low)
+        # The searches end within a hundredth of a standard error of their maximum.
+        width = estimate.high - estimate.low
+        for a, b in zip(estimate[1:4], found[1:4], strict=True):
+            assert abs(a - b) < 0.02 * width, name
+
+
+def test_a_wheel_that_never_moves_tells_nothing_of_inertia_and_damping() -> None:
+    fit = fit_driver(recorded_with(friction=100.0))
+    reasons = {each.name: each.reason for each in fit.not_identified}
+    assert "never moves" in reasons["arm.inertia"]
+    assert "never moves" in reasons["arm.damping"]
+    assert {"arm.inertia", "arm.damping"}.isdisjoint(by_name(fit))
+
+
+def test_what_is_left_of_a_wheel_that_never_moves_is_estimated() -> None:
+    # Torque then tells stiffness times noise, not each: one of them is held.
+    found = by_name(fit_driver(recorded_with(friction=100.0)))
+    assert {"vision.near_noise", "tracking.wander_deviation"} & found.keys()
+
+
+def test_without_head_and_leader_those_rows_say_why() -> None:
+    record = with_columns(recorded(1), head_yaw=None, event=None, lead_distance=None)
+    fit = fit_driver(record)
+    reasons = {each.name: each.reason for each in fit.not_identified}
+    assert "head_yaw" in reasons["gaze.false_rate"]
+    assert "head_yaw" in reasons["decision.glance_share"]
+    assert "lead_distance" in reasons["longitudinal.preferred_speed"]
+    assert {p.name for p in STEERING} <= by_name(fit).keys()
+
+
+def test_every_interval_holds_its_estimate() -> None:
+    for estimate in fit_of(2).estimates:
+        assert estimate.low <= estimate.value <= estimate.high
+        assert math.isfinite(estimate.low)
+        assert math.isfinite(estimate.high)
+
+
+def test_a_shorter_recording_tells_less() -> None:
+    whole = by_name(fit_of(1))
+    part = by_name(fit_driver(cut(recorded(1), slice(0, 11_000))))
+    for parameter in STEERING:
+        wide, narrow = part[parameter.name], whole[parameter.name]
+        # Less than half of the lane keeping: intervals are about 1.5 times as wide.
+        assert wide.high - wide.low > 1.1 * (narrow.high - narrow.low)
