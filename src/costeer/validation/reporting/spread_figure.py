@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 from matplotlib.axes import Axes
 
@@ -80,9 +78,3 @@ def _twice(axes: Axes, first: Values, second: Values) -> None:
     axes.set_ylim(*ends)
     axes.set_aspect("equal")
     axes.locator_params(nbins=4)
-
-
-def personal_share(spread: TargetSpread) -> float:
-    """Share of the variance of a value that is the driver's own [-]."""
-    total = spread.between**2 + spread.within**2
-    return spread.between**2 / total if total > 0.0 else math.nan

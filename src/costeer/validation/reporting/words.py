@@ -60,8 +60,3 @@ def real_verdict_told(comparison: RealComparison) -> str:
     if verdict != MISSED:
         return verdict
     return f"missed by {short(missed_by(comparison), 2)}"
-
-
-def sentence(text: str) -> str:
-    """The text with a full stop, if there is any."""
-    return f"{text.rstrip('.')}." if text else ""
