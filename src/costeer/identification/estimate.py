@@ -37,8 +37,9 @@ _CLOSE_ENOUGH = 1e-2
 """Largest gradient per standard error at a maximum."""
 _NEARLY = 0.3
 """The same at a maximum that rounding blurs."""
-_SINGULAR = 1e-7
-"""Smallest eigenvalue of a scaled information that is no rounding."""
+_SINGULAR = 1e-5
+"""Eigenvalue of a scaled information below which parameters are not told apart [-]; a
+trial of 8 km has 3e-3 (benchmarks/driver_recovery.py)."""
 _OPTIONS = {
     "gtol": _CLOSE_ENOUGH,
     "max_trust_radius": 1e3,

@@ -26,6 +26,7 @@ from costeer.identification.parameters import (
     NotIdentified,
     Parameter,
     driver_at,
+    natural,
     value_of,
     with_value,
 )
@@ -49,6 +50,8 @@ WIDEST = 1.0
 """Largest standard error of a logarithm that still says something [-]."""
 WIDEST_SHIFT = 0.5
 """The same of a signed quantity, in its unit."""
+
+_NEAR_LIMIT = 0.1
 
 
 class Estimate(NamedTuple):
@@ -187,7 +190,11 @@ def _told(
             _estimate(parameter, driver, float(error))
             for parameter, error in zip(told, errors, strict=True)
         ],
-        missing=[NotIdentified(name, why) for name, why in reasons.items() if why],
+        missing=[
+            NotIdentified(name, f"{why}; held at the usual value")
+            for name, why in reasons.items()
+            if why
+        ],
         notes=[] if best.converged else ["the search for the best driver did not end"],
     )
 
@@ -199,6 +206,13 @@ def _unsure(best: Maximum, told: list[Parameter], evidence: Evidence) -> dict[st
         name, other = told[errors.first].name, told[errors.second].name
         beside = f" apart from {other}" if name != other else ""
         return {name: f"the recording does not tell it{beside}: too little excitation"}
+    for parameter, value in zip(told, natural(told, best.point), strict=True):
+        room = _NEAR_LIMIT * (abs(parameter.low) + abs(parameter.high)) / 2.0
+        if parameter.positive:
+            room = _NEAR_LIMIT * value
+        if value - parameter.low < room or parameter.high - value < room:
+            limits = f"{parameter.low:g} to {parameter.high:g} {parameter.unit}"
+            return {parameter.name: f"the best value is at a limit of {limits}"}
     worst = int((errors / [_widest(p) for p in told]).argmax())
     reason = _too_unsure(told[worst], float(errors[worst]), evidence)
     return {told[worst].name: reason} if reason else {}

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import solve_discrete_lyapunov
 from scipy.signal import lfilter
 
 from costeer.base.filters import decay
@@ -34,6 +33,10 @@ TORQUE_ERROR = 1e-5
 
 _UNKNOWN = (0.0, 0.0, 0.0, 0.0, 0.02, 0.05, 0.1)
 """Deviation at the start of what is not noise [rad]: lead-lag, delay, equilibrium."""
+
+
+_DOUBLINGS = 14
+"""So many double one step to four minutes, 60 time constants of the wander."""
 
 
 def _pade_share(delay: float, dt: float) -> float:
@@ -140,6 +143,25 @@ def part(inputs: FilterInputs, rows: slice) -> FilterInputs:
     return FilterInputs(*(np.ascontiguousarray(each[rows]) for each in inputs))
 
 
+def stationary_covariance(
+    transition: NDArray[np.float64], added: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Covariance that a stable filter settles to, shape `(state, state)`.
+
+    The sum of what each past step has added, twice as many of them in every turn: more
+    robust than the linear equation, whose matrix has the square of the condition.
+
+    Args:
+        transition: Of the states in one step, shape `(state, state)`.
+        added: Covariance of the noise in one step, shape `(state, state)`.
+    """
+    total, power = added, transition
+    for _ in range(_DOUBLINGS):
+        total = total + power @ total @ power.T
+        power = power @ power
+    return np.asarray(total)
+
+
 def start(
     parameters: FilterParameters, inputs: FilterInputs, vision: VisionParameters
 ) -> tuple[Signal, NDArray[np.float64]]:
@@ -158,7 +180,7 @@ def start(
     fill_vision_and_arm(parameters, inputs, 0, matrix)
     transition = matrix[:NUM_STATES, :NUM_STATES]
     noise = matrix[:NUM_STATES, NUM_STATES : NUM_STATES + NUM_NOISES]
-    covariance = solve_discrete_lyapunov(transition, noise @ noise.T)
+    covariance = stationary_covariance(transition, noise @ noise.T)
     near, far = inputs.near_angle[0], inputs.far_angle[0]
     asked = parameters.far_gain * far + inputs.near_gain[0] * near
     memory = asked * 2.0 * vision.delay / (vision.delay + parameters.dt)

@@ -77,8 +77,8 @@ NOT_IDENTIFIED = (
     NotIdentified("vision.delay", f"{_HELD} 135 %"),
     NotIdentified(
         "arm.holding_gain, arm.intrinsic_share",
-        f"{_HELD} 43 and 23 %: the reflex acts within a tenth of a second of the "
-        "intrinsic stiffness, and the holding torque adds a tenth to the stiffness",
+        f"{_HELD} 43 and 23 %: the reflex acts a tenth of a second after the "
+        "intrinsic stiffness, and the holding torque adds to the stiffness",
     ),
     NotIdentified(
         "vision.near_time, vision.noise_time, arm.lag, tracking.wander_frequency, "
