@@ -5,10 +5,12 @@ from __future__ import annotations
 import math
 from functools import cache
 
+import numpy as np
 import pytest
 
-from costeer.identification.fit import WHITE, DriverFit, Estimate, fit_driver
-from costeer.identification.parameters import STEERING, value_of
+from costeer.identification import steering
+from costeer.identification.fit import WHITE, DriverFit, fit_driver
+from costeer.identification.parameters import STEERING, Estimate, value_of
 from costeer.loop.columns import TrialRecord
 from tests.identification.driving import (
     cut,
@@ -133,6 +135,41 @@ def test_without_head_and_leader_those_rows_say_why() -> None:
     assert "head_yaw" in reasons["decision.glance_share"]
     assert "lead_distance" in reasons["longitudinal.preferred_speed"]
     assert {p.name for p in STEERING} <= by_name(fit).keys()
+
+
+def noisy(deviation: float) -> TrialRecord:
+    record = cut(recorded(2), slice(0, 14_000))
+    rng = np.random.default_rng(5)
+    noise = deviation * rng.standard_normal(len(record.columns["time"]))
+    return with_columns(record, driver_torque=record.columns["driver_torque"] + noise)
+
+
+def test_noise_of_the_torque_sensor_is_found_and_hides_what_moves_the_arms() -> None:
+    fit = fit_driver(noisy(0.02))
+    # The relative error of a deviation from 15,000 samples is 0.6 %; the driver's own
+    # steps, half as large, are told apart from it to a few percent.
+    assert fit.torque_noise == pytest.approx(0.02, rel=0.1)
+    reasons = {each.name: each.reason for each in fit.not_identified}
+    assert "noise of 0.02" in reasons["arm.inertia"]
+    assert "noise of 0.02" in reasons["arm.damping"]
+    assert "noise of 0.02" in fit.notes[0]
+    # What is left agrees with the fit of the clean torque to within its interval.
+    for name in ("vision.lead_time", "tracking.lane_bias"):
+        clean, found = by_name(fit_of(2))[name], by_name(fit)[name]
+        assert clean.low < found.value < clean.high
+
+
+def test_a_simulators_torque_has_no_noise() -> None:
+    assert fit_of(1).torque_noise == 1e-5
+
+
+def test_a_recording_that_tells_nothing_of_the_steering_is_refused(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    moved = tuple(p for p in STEERING if p.name in ("arm.inertia", "arm.damping"))
+    monkeypatch.setattr(steering, "STEERING", moved)
+    with pytest.raises(ValueError, match=r"nothing of the steering: arm\.damping: the"):
+        fit_driver(recorded_with(friction=100.0))
 
 
 def test_every_interval_holds_its_estimate() -> None:

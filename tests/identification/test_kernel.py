@@ -47,7 +47,7 @@ def test_with_the_true_driver_the_predicted_variance_is_that_of_the_errors(
 def some_inputs() -> tuple[FilterInputs, np.ndarray, np.ndarray]:
     driver = true_driver(1)
     evidence = evidence_of(recorded(1), driver)
-    parameters = filter_parameters(driver, evidence.drive.dt)
+    parameters = filter_parameters(driver, evidence.drive.dt, 1e-5)
     inputs = filter_inputs(driver, evidence.drive, evidence.motion)
     stretch = part(inputs, slice(600, 640))
     mean, covariance = start(parameters, stretch, driver.vision)
@@ -55,7 +55,7 @@ def some_inputs() -> tuple[FilterInputs, np.ndarray, np.ndarray]:
 
 
 def test_compiled_filter_gives_what_plain_python_gives() -> None:
-    parameters = filter_parameters(true_driver(1), 1.0 / 60.0)
+    parameters = filter_parameters(true_driver(1), 1.0 / 60.0, 1e-5)
     outcomes = []
     for run in (innovations, innovations_compiled):
         stretch, mean, covariance = some_inputs()
@@ -69,7 +69,7 @@ def test_compiled_filter_gives_what_plain_python_gives() -> None:
 def test_the_covariance_settles_and_stays_positive() -> None:
     driver = true_driver(1)
     evidence = evidence_of(recorded(1), driver)
-    parameters = filter_parameters(driver, evidence.drive.dt)
+    parameters = filter_parameters(driver, evidence.drive.dt, 1e-5)
     inputs = filter_inputs(driver, evidence.drive, evidence.motion)
     stretch = part(inputs, evidence.stretches[0])
     mean, covariance = start(parameters, stretch, driver.vision)

@@ -110,7 +110,7 @@ def test_without_noise_the_filter_predicts_what_the_simulator_does(
     driver = true_driver(participant)
     drive = made_up_drive(driver.tracking.lane_bias)
     drive = drive._replace(driver_torque=torque_of_the_simulator(driver, drive))
-    parameters = filter_parameters(driver, DT)
+    parameters = filter_parameters(driver, DT, 1e-5)
     inputs = filter_inputs(driver, drive, wheel_motion(drive, driver.arm))
     mean, covariance = start(parameters, inputs, driver.vision)
     errors, variances = np.empty((2, inputs.torque.size))

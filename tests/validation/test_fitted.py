@@ -94,6 +94,6 @@ def test_a_speed_outside_the_simulator_is_refused() -> None:
 
 def test_the_figure_has_a_panel_for_each_estimate_and_the_same_text_twice() -> None:
     fit = fitted()
-    assert fit_svg(fit) == fit_svg(fit)
+    assert fit_svg(fit, 19.4) == fit_svg(fit, 19.4)
     assert description(fit).startswith("11 estimates")
     assert "arm.stiffness" in description(fit)

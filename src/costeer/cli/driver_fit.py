@@ -12,6 +12,7 @@ from costeer.cli.console import note, print_table, progress
 
 if TYPE_CHECKING:
     from costeer.identification.fit import DriverFit
+    from costeer.loop.columns import TrialRecord
     from costeer.validation.fitted import Check
 
 
@@ -46,7 +47,7 @@ def show_fit(path: Path, as_json: bool, jobs: int | None, plot: Path | None) -> 
         note(f"not checked: {error}")
         checks = []
     if plot is not None:
-        _draw(plot, fit)
+        _draw(plot, fit, record)
     if as_json:
         _print_json(path, fit, checks)
     else:
@@ -63,12 +64,18 @@ def _check_plot(plot: Path | None) -> None:
         raise ValueError(f"{plot} is no SVG; give --plot a name that ends in .svg")
 
 
-def _draw(plot: Path, fit: DriverFit) -> None:
+def _draw(plot: Path, fit: DriverFit, record: TrialRecord) -> None:
+    """Draw the fit on the population at the speed that was suggested, if recorded."""
+    import numpy as np
+
     from costeer.study.folder import write_text
     from costeer.validation.fitted_figure import fit_svg
 
     plot.parent.mkdir(parents=True, exist_ok=True)
-    write_text(plot, fit_svg(fit))
+    suggested = record.metadata.get("speed")
+    if not isinstance(suggested, float):
+        suggested = float(np.mean(record.columns["longitudinal_velocity"]))
+    write_text(plot, fit_svg(fit, suggested))
     note(f"wrote {plot}")
 
 
@@ -131,6 +138,7 @@ def _print_json(path: Path, fit: DriverFit, checks: list[Check]) -> None:
         "population": POPULATION_VERSION,
         "lane_keeping": fit.lane_keeping,
         "num_changes": fit.num_changes,
+        "torque_noise": fit.torque_noise,
         "prediction_error": fit.prediction_error,
         "whiteness": fit.whiteness,
         "estimates": [e._asdict() for e in fit.estimates],

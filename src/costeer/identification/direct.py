@@ -5,8 +5,6 @@ Each estimate comes with an interval for few samples, or with the reason for its
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
 from scipy.optimize import least_squares
 from scipy.stats import beta, chi2, t
@@ -14,6 +12,7 @@ from scipy.stats import beta, chi2, t
 from costeer.drivers.gaze import GazeParameters
 from costeer.drivers.longitudinal import LongitudinalParameters
 from costeer.identification.drive import Drive, Signal
+from costeer.identification.parameters import Estimate
 from costeer.identification.stretches import (
     Change,
     apart_from,
@@ -39,29 +38,9 @@ FEWEST_CHANGES = 2
 FEWEST_SPEEDS = 2.0
 
 
-class Direct(NamedTuple):
-    """A directly estimated parameter.
-
-    Attributes:
-        name: Part of the driver and field.
-        value: NaN if it could not be estimated.
-        low: Lower end of the 95 % interval.
-        high: Upper end.
-        unit: Of all three.
-        how: Of the estimate and its interval, or why there is none.
-    """
-
-    name: str
-    value: float
-    low: float
-    high: float
-    unit: str
-    how: str
-
-
-def _none(name: str, unit: str, reason: str) -> Direct:
+def _none(name: str, unit: str, reason: str) -> Estimate:
     nan = float("nan")
-    return Direct(name=name, value=nan, low=nan, high=nan, unit=unit, how=reason)
+    return Estimate(name=name, value=nan, low=nan, high=nan, unit=unit, how=reason)
 
 
 def planned_duration(drive: Drive, change: Change) -> float:
@@ -91,7 +70,7 @@ def planned_duration(drive: Drive, change: Change) -> float:
     return float(np.exp(found.x[1])) if found.success else float("nan")
 
 
-def change_duration(drive: Drive, found: list[Change]) -> Direct:
+def change_duration(drive: Drive, found: list[Change]) -> Estimate:
     """Median planned duration of the lane changes, with a t interval of its logarithm.
 
     Args:
@@ -109,7 +88,7 @@ def change_duration(drive: Drive, found: list[Change]) -> Direct:
     mean = float(logs.mean())
     low, high = np.exp([mean - half, mean + half]).tolist()
     how = f"quintics fitted to {logs.size} lane changes, t interval"
-    return Direct(name, float(np.exp(mean)), low, high, unit, how)
+    return Estimate(name, float(np.exp(mean)), low, high, unit, how)
 
 
 def _free_rows(drive: Drive, found: list[Change]) -> list[slice]:
@@ -135,7 +114,7 @@ def effective_number(time: Signal, correlation_time: float) -> float:
     return float(1.0 / np.exp(-lags / correlation_time).mean())
 
 
-def preferred_speed(drive: Drive, found: list[Change]) -> Direct:
+def preferred_speed(drive: Drive, found: list[Change]) -> Estimate:
     """Mean speed of free driving, with a t interval for correlated samples.
 
     Args:
@@ -164,7 +143,7 @@ def preferred_speed(drive: Drive, found: list[Change]) -> Direct:
     mean = float(speed.mean())
     half = float(t.isf(TAIL, number - 1.0) * np.sqrt(spread / number))
     how = f"mean of {index.size} s, worth {number:.1f} independent samples, t interval"
-    return Direct(name, mean, mean - half, mean + half, unit, how)
+    return Estimate(name, mean, mean - half, mean + half, unit, how)
 
 
 def glances(yaw: Signal, dt: float) -> tuple[Signal, Signal]:
@@ -179,7 +158,7 @@ def glances(yaw: Signal, dt: float) -> tuple[Signal, Signal]:
     return times, np.array([np.sign(yaw[rows].mean()) for rows in turned])
 
 
-def false_rate(drive: Drive, found: list[Change]) -> Direct:
+def false_rate(drive: Drive, found: list[Change]) -> Estimate:
     """Rate of glances to one side without a lane change, exact Poisson interval.
 
     Args:
@@ -200,10 +179,10 @@ def false_rate(drive: Drive, found: list[Change]) -> Direct:
     low = float(chi2.isf(1.0 - TAIL, 2 * count)) / 2.0 if count else 0.0
     high = float(chi2.isf(TAIL, 2 * count + 2)) / 2.0
     how = f"{count} glances in {total:.0f} s, exact Poisson interval"
-    return Direct(name, count / exposure, low / exposure, high / exposure, unit, how)
+    return Estimate(name, count / exposure, low / exposure, high / exposure, unit, how)
 
 
-def glance_share(drive: Drive, found: list[Change]) -> Direct:
+def glance_share(drive: Drive, found: list[Change]) -> Estimate:
     """Share of lane changes with a glance before, exact binomial interval.
 
     Args:
@@ -229,10 +208,10 @@ def glance_share(drive: Drive, found: list[Change]) -> Direct:
     low = float(beta.ppf(TAIL, with_glance, without + 1)) if with_glance else 0.0
     high = float(beta.isf(TAIL, with_glance + 1, without)) if without else 1.0
     how = f"{with_glance} of {len(seen)} lane changes, exact binomial interval"
-    return Direct(name, with_glance / len(seen), low, high, unit, how)
+    return Estimate(name, with_glance / len(seen), low, high, unit, how)
 
 
-def direct_estimates(drive: Drive, found: list[Change]) -> list[Direct]:
+def direct_estimates(drive: Drive, found: list[Change]) -> list[Estimate]:
     """All that a recording shows without a filter.
 
     Args:

@@ -7,18 +7,21 @@ Intervals come from the observed information, the curvature of the likelihood it
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import minimize
+from scipy.optimize import minimize, minimize_scalar
 from scipy.stats import norm
 
 from costeer.drivers.driver import DriverParameters
 from costeer.identification.likelihood import (
+    NO_NOISE,
     Evidence,
     Prediction,
+    TorqueNoise,
     log_likelihoods,
     predicted,
 )
@@ -40,6 +43,10 @@ _NEARLY = 0.3
 _SINGULAR = 1e-5
 """Eigenvalue of a scaled information below which parameters are not told apart [-]; a
 trial of 8 km has 3e-3 (benchmarks/driver_recovery.py)."""
+_LEAST_NOISE = 5e-4
+"""Less noise of the torque than this is none [N·m]: a fiftieth of what a step of the
+driver's own noise gives."""
+_MOST_NOISE = 1.0
 _OPTIONS = {
     "gtol": _CLOSE_ENOUGH,
     "max_trust_radius": 1e3,
@@ -49,17 +56,15 @@ _OPTIONS = {
 
 
 class Maximum(NamedTuple):
-    """The best point on the scale that is searched.
+    """The driver who explains a recording best.
 
     Attributes:
-        point: Shape `(parameter,)`.
-        information: Observed, shape `(parameter, parameter)`.
-        log_likelihood: There [-].
+        driver: With the parameters that were searched.
+        log_likelihood: Of the recording [-].
         converged: Whether the gradient vanishes there.
     """
 
-    point: Vector
-    information: Vector
+    driver: DriverParameters
     log_likelihood: float
     converged: bool
 
@@ -181,8 +186,7 @@ def maximise(
     )
     point = np.asarray(found.x * scale)
     return Maximum(
-        point=point,
-        information=observed_information(objective, point),
+        driver=driver_at(start, parameters, point),
         log_likelihood=-float(found.fun),
         converged=bool(np.abs(found.jac).max() < _NEARLY),
     )
@@ -214,15 +218,20 @@ def deviations(matrix: Vector) -> Vector | Weakest:
     return Weakest(first=int(order[0]), second=int(order[min(1, len(order) - 1)]))
 
 
-def observed_information(objective: _Objective, point: Vector) -> Vector:
+def observed_information(
+    driver: DriverParameters, parameters: Sequence[Parameter], evidence: Evidence
+) -> Vector:
     """Curvature of the negative log-likelihood, shape `(parameter, parameter)`.
 
     Central differences of the gradient over a fifth of each standard error.
 
     Args:
-        objective: The likelihood.
-        point: Its maximum.
+        driver: The maximum.
+        parameters: What was searched.
+        evidence: Recording and stretches.
     """
+    objective = _Objective(driver, parameters, evidence)
+    point = coordinates(driver, parameters)
     covariance = np.linalg.pinv(objective.curvature(point))
     rows = []
     for k, deviation in enumerate(np.sqrt(np.diag(covariance))):
@@ -231,6 +240,29 @@ def observed_information(objective: _Objective, point: Vector) -> Vector:
         rise = objective.gradient(point + step) - objective.gradient(point - step)
         rows.append(rise / (2.0 * step[k]))
     return np.asarray((np.array(rows) + np.transpose(rows)) / 2.0)
+
+
+def likeliest_noise(driver: DriverParameters, evidence: Evidence) -> TorqueNoise:
+    """Noise of the measured torque that explains a recording best.
+
+    Args:
+        driver: Who is taken to have driven.
+        evidence: Recording and stretches.
+    """
+
+    def misfit(logarithm: float) -> float:
+        noise = TorqueNoise(deviation=math.exp(logarithm), driven_share=1.0)
+        found = predicted(driver, evidence._replace(noise=noise))
+        return -float(log_likelihoods(found).sum())
+
+    limits = (math.log(NO_NOISE.deviation), math.log(_MOST_NOISE))
+    found = minimize_scalar(misfit, bounds=limits, method="bounded")
+    deviation = math.exp(float(found.x))
+    if deviation < _LEAST_NOISE:
+        return NO_NOISE
+    noise = TorqueNoise(deviation=deviation, driven_share=1.0)
+    variances = predicted(driver, evidence._replace(noise=noise)).variances
+    return TorqueNoise(deviation, 1.0 - deviation**2 * float(np.mean(1.0 / variances)))
 
 
 def half_width(deviation: float) -> float:

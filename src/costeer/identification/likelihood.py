@@ -3,7 +3,9 @@
 What the hands do moves the wheel within the same step, so wheel and torque are known
 together: the density of the torque is that of the muscles times how much more the
 muscles had to give than the hands show (log-Jacobian), because arms and wheel move
-together. Where dry friction holds the wheel both are the same.
+together. Where dry friction holds the wheel both are the same. Noise of a torque
+sensor moves no wheel: the log-Jacobian then counts for the share of the prediction
+errors that is the driver's, so that inertia and damping stay unbiased.
 """
 
 from __future__ import annotations
@@ -33,6 +35,22 @@ SETTLING_TIME = 4.0
 which is not independent of where the car was when the stretch began."""
 
 
+class TorqueNoise(NamedTuple):
+    """Noise of the measured torque, which the driver does not feel.
+
+    Attributes:
+        deviation: Of each sample [N·m].
+        driven_share: Of a prediction error's variance the part that moved the wheel.
+    """
+
+    deviation: float
+    driven_share: float
+
+
+NO_NOISE = TorqueNoise(deviation=1e-5, driven_share=1.0)
+"""A simulator's own torque; what the cubic between samples misses is left."""
+
+
 class Evidence(NamedTuple):
     """What a fit looks at.
 
@@ -40,11 +58,13 @@ class Evidence(NamedTuple):
         drive: The recording.
         motion: Of its wheel.
         stretches: Rows of lane keeping.
+        noise: Of the measured torque.
     """
 
     drive: Drive
     motion: WheelMotion
     stretches: Sequence[slice]
+    noise: TorqueNoise = NO_NOISE
 
 
 class Prediction(NamedTuple):
@@ -92,7 +112,7 @@ def shown_share(arm: ArmParameters, column: ColumnParameters, dt: float) -> floa
 def predicted(driver: DriverParameters, evidence: Evidence) -> Prediction:
     """Predict every torque of the stretches from what was before it."""
     drive, motion = evidence.drive, evidence.motion
-    parameters = filter_parameters(driver, drive.dt)
+    parameters = filter_parameters(driver, drive.dt, evidence.noise.deviation)
     inputs = filter_inputs(driver, drive, motion)
     skipped = round(SETTLING_TIME / drive.dt)
     errors, variances, sliding = [], [], []
@@ -108,7 +128,8 @@ def predicted(driver: DriverParameters, evidence: Evidence) -> Prediction:
     return Prediction(
         errors=np.concatenate(errors),
         variances=np.concatenate(variances),
-        log_jacobian=-np.log(1.0 - hidden * np.concatenate(sliding)),
+        log_jacobian=-evidence.noise.driven_share
+        * np.log(1.0 - hidden * np.concatenate(sliding)),
     )
 
 

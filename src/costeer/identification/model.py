@@ -28,9 +28,6 @@ from costeer.identification.kernel import (
 )
 from costeer.plant.parameters import holding_stiffness
 
-TORQUE_ERROR = 1e-5
-"""Standard deviation of what the cubic between samples misses [N·m]."""
-
 _UNKNOWN = (0.0, 0.0, 0.0, 0.0, 0.02, 0.05, 0.1)
 """Deviation at the start of what is not noise [rad]: lead-lag, delay, equilibrium."""
 
@@ -72,8 +69,16 @@ def wheel_motion(drive: Drive, arm: ArmParameters) -> WheelMotion:
     )
 
 
-def filter_parameters(driver: DriverParameters, dt: float) -> FilterParameters:
-    """The driver's constants over a control step of `dt` [s]."""
+def filter_parameters(
+    driver: DriverParameters, dt: float, torque_noise: float
+) -> FilterParameters:
+    """The driver's constants over a control step.
+
+    Args:
+        driver: Eyes, aim and arms.
+        dt: Control step [s].
+        torque_noise: Standard deviation of the measured torque's noise [N·m].
+    """
     eyes, aim, arm = driver.vision, driver.tracking, driver.arm
     kept = decay(dt, eyes.noise_time)
     kick = np.sqrt(1.0 - kept * kept)
@@ -93,7 +98,7 @@ def filter_parameters(driver: DriverParameters, dt: float) -> FilterParameters:
         far_gain=eyes.far_gain,
         arm_kept=float(left[-1]),
         arm_mean=float(left.mean()),
-        error_variance=TORQUE_ERROR**2,
+        error_variance=torque_noise**2,
         dt=dt,
     )
 

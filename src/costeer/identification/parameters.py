@@ -47,6 +47,26 @@ STEERING = (
 """The identifiable set of the steering, estimated together."""
 
 
+class Estimate(NamedTuple):
+    """A parameter of the driver, as the recording tells it.
+
+    Attributes:
+        name: Part of the driver and field, as in `vision.lead_time`.
+        value: Best estimate.
+        low: Lower end of the 95 % interval.
+        high: Upper end.
+        unit: Of all three.
+        how: Of the estimate and its interval.
+    """
+
+    name: str
+    value: float
+    low: float
+    high: float
+    unit: str
+    how: str
+
+
 class NotIdentified(NamedTuple):
     """A parameter that stays at its usual value.
 

@@ -5,10 +5,11 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from numpy.typing import NDArray
 
 from costeer.drivers.population import POPULATION_VERSION, participant_driver
-from costeer.identification.fit import DriverFit, Estimate
-from costeer.identification.parameters import value_of
+from costeer.identification.fit import DriverFit
+from costeer.identification.parameters import Estimate, value_of
 from costeer.study.figures.style import (
     FULL_WIDTH_MM,
     INK,
@@ -32,10 +33,15 @@ _ROW_MM = 30.0
 _BINS = 24
 
 
-def fit_svg(fit: DriverFit) -> str:
-    """Return the figure as SVG; the same fit gives the same text."""
+def fit_svg(fit: DriverFit, suggested_speed: float) -> str:
+    """Return the figure as SVG; the same fit gives the same text.
+
+    Args:
+        fit: To draw.
+        suggested_speed: To the population beside it [m/s].
+    """
     with styled():
-        return svg_text(draw_fit(fit), "fit", description(fit))
+        return svg_text(draw_fit(fit, suggested_speed), "fit", description(fit))
 
 
 def description(fit: DriverFit) -> str:
@@ -48,8 +54,13 @@ def description(fit: DriverFit) -> str:
     )
 
 
-def draw_fit(fit: DriverFit) -> Figure:
-    """Draw a panel for each estimate; call inside `styled`."""
+def draw_fit(fit: DriverFit, suggested_speed: float) -> Figure:
+    """Draw a panel for each estimate; call inside `styled`.
+
+    Args:
+        fit: To draw.
+        suggested_speed: To the population beside it [m/s].
+    """
     rows = -(-len(fit.estimates) // _COLUMNS)
     height = 10.0 + rows * _ROW_MM
     figure = new_figure(FULL_WIDTH_MM, height)
@@ -71,26 +82,20 @@ def draw_fit(fit: DriverFit) -> Figure:
         between_rows=13.0,
     )
     axes = [a for row in panels(figure, rows, _COLUMNS, margins) for a in row]
+    drivers = [
+        participant_driver(POPULATION_SEED, number, suggested_speed)
+        for number in range(1, NUM_DRIVERS + 1)
+    ]
     for axis, estimate in zip(axes, fit.estimates, strict=False):
-        _panel(axis, estimate, fit.driver.longitudinal.preferred_speed)
+        values = np.array([value_of(driver, estimate.name) for driver in drivers])
+        _panel(axis, estimate, values)
     for axis in axes[len(fit.estimates) :]:
         axis.set_visible(False)
     return figure
 
 
-def _panel(axes: Axes, estimate: Estimate, speed: float) -> None:
-    """One estimate on the drivers of the population.
-
-    Args:
-        axes: Panel.
-        estimate: To show.
-        speed: Suggested to the population [m/s].
-    """
-    drivers = [
-        participant_driver(POPULATION_SEED, number, speed)
-        for number in range(1, NUM_DRIVERS + 1)
-    ]
-    values = np.array([value_of(driver, estimate.name) for driver in drivers])
+def _panel(axes: Axes, estimate: Estimate, values: NDArray[np.float64]) -> None:
+    """One estimate on the values of the population."""
     low = min(float(values.min()), estimate.low)
     high = max(float(values.max()), estimate.high)
     room = 0.05 * (high - low)
