@@ -104,8 +104,8 @@ def _departures(evidence: Evidence, drawn: Pictures) -> Section:
         missing = "No driver kept a lane for long enough to tell of departures."
         return Section(name, title, (missing,), ())
     text = (
-        "People correct more firmly near a line than a Gaussian lane position would, "
-        "and depart less than their SDLP suggests. How the drivers compare:",
+        "Whoever corrects more firmly near a line departs less often than a Gaussian "
+        "lane position of the same spread would; whoever lets go there, more often.",
     )
     items = (
         departures_part.departures_table(told),
