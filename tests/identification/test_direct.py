@@ -14,6 +14,7 @@ from costeer.identification.direct import (
     false_rate,
     glance_share,
     glances,
+    path_duration,
     planned_duration,
     preferred_speed,
 )
@@ -59,16 +60,17 @@ def test_a_quintic_lane_change_has_its_duration(duration: float) -> None:
     drive = quintic_drive([duration, duration], [100.0, 200.0])
     for change in changes(drive):
         # The wheel's samples are exact: only the optimiser's tolerance is left.
-        assert planned_duration(drive, change) == pytest.approx(duration, rel=1e-4)
+        assert path_duration(drive, change) == pytest.approx(duration, rel=1e-4)
 
 
 def test_the_median_duration_is_the_geometric_mean_with_a_t_interval() -> None:
     drive = quintic_drive([4.0, 9.0], [100.0, 200.0])
     found = change_duration(drive, changes(drive))
-    assert found.value == pytest.approx(6.0, rel=1e-4)
+    quick, slow = planned_duration(4.0), planned_duration(9.0)
+    assert found.value == pytest.approx(math.sqrt(quick * slow), rel=1e-4)
     # t with one degree of freedom: 12.706 times half the difference of the logarithms.
     assert math.log(found.high / found.value) == pytest.approx(
-        12.7062 * math.log(9.0 / 4.0) / 2.0, rel=1e-3
+        12.7062 * math.log(slow / quick) / 2.0, rel=1e-3
     )
     assert found.low * found.high == pytest.approx(found.value**2)
 

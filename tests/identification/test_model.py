@@ -15,7 +15,12 @@ from costeer.identification.drive import (
     angles_between,
     sliding_share,
 )
-from costeer.identification.kernel import innovations
+from costeer.identification.kernel import (
+    MOTOR_NOISE,
+    NEAR_NOISE,
+    WANDER,
+    innovations,
+)
 from costeer.identification.likelihood import shown_share
 from costeer.identification.model import (
     filter_inputs,
@@ -118,6 +123,24 @@ def test_without_noise_the_filter_predicts_what_the_simulator_does(
     # Nothing is random and both start at rest: only rounding is left, of 1 N·m.
     assert np.abs(errors).max() < 1e-10
     assert np.abs(drive.driver_torque).max() > 0.1
+
+
+@pytest.mark.parametrize("participant", [1, 2])
+def test_wander_and_noise_begin_with_the_deviations_of_the_driver(
+    participant: int,
+) -> None:
+    driver = true_driver(participant)
+    drive = made_up_drive(0.0)
+    inputs = filter_inputs(driver, drive, wheel_motion(drive, driver.arm))
+    parameters = filter_parameters(driver, DT, 1e-5)
+    _, covariance = start(parameters, inputs, driver.vision)
+    deviations = np.sqrt(np.diag(covariance))
+    # The wander's step is semi-implicit: its variance is off by the order of ω dt.
+    assert deviations[WANDER] == pytest.approx(
+        driver.tracking.wander_deviation, rel=0.01
+    )
+    assert deviations[NEAR_NOISE] == pytest.approx(driver.vision.near_noise, rel=1e-9)
+    assert deviations[MOTOR_NOISE] == pytest.approx(driver.vision.motor_noise, rel=1e-9)
 
 
 def test_a_wheel_between_samples_is_the_cubic_through_them() -> None:
