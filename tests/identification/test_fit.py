@@ -39,6 +39,11 @@ def fit_of(participant: int) -> DriverFit:
     return fit_driver(recorded(participant))
 
 
+@cache
+def fit_of_a_still_wheel() -> DriverFit:
+    return fit_driver(recorded_with(friction=100.0))
+
+
 def by_name(fit: DriverFit) -> dict[str, Estimate]:
     return {estimate.name: estimate for estimate in fit.estimates}
 
@@ -114,7 +119,7 @@ def test_a_mirrored_recording_mirrors_the_bias_and_nothing_else() -> None:
 
 
 def test_a_wheel_that_never_moves_tells_nothing_of_inertia_and_damping() -> None:
-    fit = fit_driver(recorded_with(friction=100.0))
+    fit = fit_of_a_still_wheel()
     reasons = {each.name: each.reason for each in fit.not_identified}
     assert "never moves" in reasons["arm.inertia"]
     assert "never moves" in reasons["arm.damping"]
@@ -123,7 +128,7 @@ def test_a_wheel_that_never_moves_tells_nothing_of_inertia_and_damping() -> None
 
 def test_what_is_left_of_a_wheel_that_never_moves_is_estimated() -> None:
     # Torque then tells stiffness times noise, not each: one of them is held.
-    found = by_name(fit_driver(recorded_with(friction=100.0)))
+    found = by_name(fit_of_a_still_wheel())
     assert {"vision.near_noise", "tracking.wander_deviation"} & found.keys()
 
 
