@@ -1,6 +1,6 @@
 """Known drivers fitted: how often the 95 % interval holds the truth, and why not more.
 
-    python benchmarks/driver_recovery.py [--drivers 100] [--seed 31] [--jobs 2]
+    python benchmarks/driver_recovery.py [--drivers 100] [--seed 77] [--jobs 2]
 
 The first table counts, per parameter of the identifiable set, the fits whose interval
 holds the true value. The second adds to that set one parameter that a fit holds at its
@@ -134,7 +134,7 @@ def main() -> None:
     """Print both tables."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--drivers", type=int, default=100)
-    parser.add_argument("--seed", type=int, default=31)
+    parser.add_argument("--seed", type=int, default=77)
     parser.add_argument("--jobs", type=int, default=2)
     options = parser.parse_args()
     setups = [manual(options.seed, n) for n in range(1, options.drivers + 1)]
