@@ -117,7 +117,7 @@ NOT_IDENTIFIED = (
     ),
 )
 """What a fit leaves at its usual value, whatever the recording; the numbers are the
-medians of `benchmarks/driver_recovery.py`."""
+medians of `benchmarks/driver_recovery.py --seed 31`."""
 
 
 def value_of(driver: DriverParameters, name: str) -> float:
