@@ -109,7 +109,7 @@ def test_no_transient_is_left_in_the_measured_period() -> None:
     assert coefficients(angles) == pytest.approx(coefficients(longer), rel=1e-4)
 
 
-def test_relaxed_arms_never_feed_the_motion_and_a_late_reflex_does() -> None:
+def test_relaxed_arms_damp_the_motion_and_a_late_reflex_takes_that_away() -> None:
     damping = effective_damping(dozen()["relaxed"])
     own = [participant_driver(PILOT_SEED, n, 20.0).arm.damping for n in range(1, 13)]
     # Half a step of muscle lag, K dt / 2, is 1 % of the damping.
@@ -118,8 +118,10 @@ def test_relaxed_arms_never_feed_the_motion_and_a_late_reflex_does() -> None:
     late = hands.stiffness * (1.0 - hands.intrinsic_share)
     wanted = hands.damping - late * (hands.lag + hands.reflex_delay)
     test = ArmTest("driving", FREQUENCIES, arm_admittance(USUAL, "driving")[None])
-    # At 0.1 Hz the lag turns by w T = 0.06 rad, its square is left out.
-    assert effective_damping(test)[0, 0] == pytest.approx(wanted, rel=0.03)
+    # At 0.1 Hz the lag turns by w T = 0.06 rad, its square is left out; muscle lag as
+    # above. What the reflex takes is as large as the damping, so the sum is near zero.
+    found = effective_damping(test)[0, 0]
+    assert found == pytest.approx(wanted, abs=0.03 * hands.damping)
 
 
 def test_relaxed_and_driving_arms_are_of_the_assumed_size() -> None:

@@ -9,7 +9,7 @@ import pytest
 from numpy.typing import NDArray
 
 from costeer.controller.consistency import ConsistencyParameters
-from costeer.loop.scenario import PILOT_SEED, TrialSetup, trial_driver
+from costeer.loop.scenario import PILOT_SEED, TrialSetup
 from costeer.loop.trial import simulate_trial
 from costeer.validation import pilot
 from costeer.validation.pilot import (
@@ -28,10 +28,10 @@ def gaps_of_first() -> list[NDArray[np.float64]]:
 
 def test_pilot_runs_are_lane_keeping_and_own_lane_changes_strong_and_weak() -> None:
     setups = agreeing_setups(1)
-    own = trial_driver(setups[0]).decision.change_duration
     assert [s.strength_factor for s in setups] == [1.0, 1.0, 0.4, 0.4]
     assert [s.events for s in setups] == [False, True, False, True]
-    assert {s.change_duration for s in setups if s.events} == {own}
+    assert [s.follows_plan for s in setups] == [False, True, False, True]
+    assert {s.intention for s in setups if s.events} == {"scripted"}
     assert {s.seed for s in setups} == {PILOT_SEED}
 
 
