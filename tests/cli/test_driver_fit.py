@@ -71,6 +71,7 @@ def test_a_plot_that_is_no_svg_is_refused_before_the_fit(file: Path) -> None:
         show_fit(file, False, 1, Path("fit.png"))
 
 
+@pytest.mark.slow
 def test_a_driver_whom_the_model_does_not_describe_is_noted(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

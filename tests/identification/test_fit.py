@@ -149,6 +149,7 @@ def noisy(deviation: float) -> TrialRecord:
     return with_columns(record, driver_torque=record.columns["driver_torque"] + noise)
 
 
+@pytest.mark.slow
 def test_noise_of_the_torque_sensor_is_found_and_hides_what_moves_the_arms() -> None:
     fit = fit_driver(noisy(0.02))
     # The relative error of a deviation from 15,000 samples is 0.6 %; the driver's own

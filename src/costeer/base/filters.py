@@ -40,8 +40,8 @@ def pade_delay(state: Real, value: Real, delay: Real, dt: Real) -> tuple[Real, R
     """First-order Pade delay (1 - T s / 2) / (1 + T s / 2), bilinear in `dt` [s].
 
     An all-pass: it changes no amplitude, and slow signals come out exactly `delay`
-    later. The state of a signal at rest at x is 2 x delay / (delay + dt). A jump comes out
-    with a first step the wrong way.
+    later. The state of a signal at rest at x is 2 x delay / (delay + dt). A jump
+    comes out with a first step the wrong way.
 
     Args:
         state: Its memory, in the unit of the value.
