@@ -48,7 +48,7 @@ def by_name(fit: DriverFit) -> dict[str, Estimate]:
     return {estimate.name: estimate for estimate in fit.estimates}
 
 
-@pytest.mark.parametrize("participant", [1, 2, 3])
+@pytest.mark.parametrize("participant", [1, 2, pytest.param(3, marks=pytest.mark.slow)])
 def test_the_truth_is_near_every_estimate(participant: int) -> None:
     truth = true_driver(participant)
     for estimate in fit_of(participant).estimates:

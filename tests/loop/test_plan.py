@@ -18,7 +18,7 @@ from costeer.loop.scenario import PILOT_SEED, TrialSetup, loop_parameters
 from costeer.loop.step import DT, LoopParameters
 
 METHODS_DURATION = 5.0
-WHO = (1, 2)
+WHO = (1, pytest.param(2, marks=pytest.mark.slow))
 
 
 class Change(NamedTuple):

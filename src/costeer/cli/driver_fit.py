@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import typer
 
 from costeer.cli.console import note, print_table, progress
+from costeer.cli.driver_tables import refuse_bad_plot
 
 if TYPE_CHECKING:
     from costeer.identification.fit import DriverFit
@@ -34,7 +35,7 @@ def show_fit(path: Path, as_json: bool, jobs: int | None, plot: Path | None) -> 
     from costeer.study.jobs import default_jobs
     from costeer.validation.fitted import REPEATS, check_fit
 
-    _check_plot(plot)
+    refuse_bad_plot(plot)
     record = read_recording(path)
     try:
         fit = fit_driver(record)
@@ -52,16 +53,6 @@ def show_fit(path: Path, as_json: bool, jobs: int | None, plot: Path | None) -> 
         _print_json(path, fit, checks)
     else:
         _print_tables(path, fit, checks)
-
-
-def _check_plot(plot: Path | None) -> None:
-    """Refuse a name that is no SVG before the fit.
-
-    Raises:
-        ValueError: If it does not end in .svg, or is a folder.
-    """
-    if plot is not None and (plot.suffix != ".svg" or plot.is_dir()):
-        raise ValueError(f"{plot} is no SVG; give --plot a name that ends in .svg")
 
 
 def _draw(plot: Path, fit: DriverFit, record: TrialRecord) -> None:

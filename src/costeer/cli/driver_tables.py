@@ -47,7 +47,7 @@ def show_drawn(asked: Asked, speed: float) -> None:
     from costeer.validation.drawn import drawn_drivers, trait_pairs
 
     check_setup(TrialSetup(seed=asked.seed, speed=speed))
-    _refuse_bad_plot(asked.plot)
+    refuse_bad_plot(asked.plot)
     drawn = drawn_drivers(asked.seed, asked.number, speed)
     if asked.plot is not None:
         from costeer.validation.drawn_figure import (
@@ -105,7 +105,7 @@ def show_validation(asked: Asked, out: Path | None, data: Path | None) -> None:
     from costeer.validation.manual import compare
     from costeer.validation.overview import overview
 
-    _refuse_bad_plot(asked.plot)
+    refuse_bad_plot(asked.plot)
     driving = _driven(asked) if out is None else _reported(asked, out, data)
     if asked.plot is not None:
         from costeer.validation.figure import population_svg
@@ -147,7 +147,7 @@ def _reported(asked: Asked, out: Path, data: Path | None) -> ManualDriving:
     return evidence.driving
 
 
-def _refuse_bad_plot(plot: Path | None) -> None:
+def refuse_bad_plot(plot: Path | None) -> None:
     """Refuse a file that could not be written, before minutes of driving.
 
     Raises:
