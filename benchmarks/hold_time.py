@@ -11,18 +11,21 @@ study. They are no participants of any study.
 from __future__ import annotations
 
 from concurrent.futures import ThreadPoolExecutor
+from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from costeer.controller.actuation import STRONG, WEAK
-from costeer.loop.scenario import TrialSetup
+from costeer.loop.scenario import PILOT_SEED, TrialSetup
 from costeer.loop.trial import simulate_trial
 from costeer.study.inconsistencies import Inconsistency, find_inconsistencies
-from costeer.validation.pilot import PILOT_SEED
 
 NUM_DRIVERS = 12
 HOLD_TIMES = (0.0, 0.2)
 DURATIONS = (4.0, 6.0, 8.0)
+SHORT = 30
+"""A stay in lane changing below this is no plan that anyone followed [samples]."""
 
 
 def setups(hold_time: float) -> list[TrialSetup]:
@@ -43,22 +46,52 @@ def setups(hold_time: float) -> list[TrialSetup]:
     ]
 
 
-def inconsistencies(setup: TrialSetup) -> tuple[Inconsistency, ...]:
-    """Those of one trial."""
-    found = find_inconsistencies(simulate_trial(setup).columns)
+class Seen(NamedTuple):
+    """What one trial shows.
+
+    Attributes:
+        inconsistencies: Of the trial.
+        stays: How long each stay in lane changing was [samples].
+        top_gain: Largest haptic gain in the short ones, 0 without any [-].
+    """
+
+    inconsistencies: tuple[Inconsistency, ...]
+    stays: NDArray[np.int64]
+    top_gain: float
+
+
+def seen(setup: TrialSetup) -> Seen:
+    """Inconsistencies and stays in lane changing of one trial."""
+    columns = simulate_trial(setup).columns
+    found = find_inconsistencies(columns)
     if isinstance(found, str):
         raise ValueError(found)
-    return found
+    changing = np.concatenate([[False], columns["mode"] == "lane_changing", [False]])
+    begins, ends = np.flatnonzero(np.diff(changing)).reshape(-1, 2).T
+    gains = [
+        float(columns["haptic_gain"][a:b].max())
+        for a, b in zip(begins, ends, strict=True)
+        if b - a < SHORT
+    ]
+    return Seen(found, ends - begins, max(gains, default=0.0))
 
 
 def main() -> None:
     """Print one row per hold time."""
     print(f"{NUM_DRIVERS} pilot drivers, six assisted conditions, scripted intention")
     print("hold [s]  number  flips each  frozen [s]  median recovery [s]  least gain")
+    short = []
     for hold_time in HOLD_TIMES:
         with ThreadPoolExecutor(2) as pool:
-            trials = pool.map(inconsistencies, setups(hold_time))
-        found = [each for trial in trials for each in trial]
+            trials = list(pool.map(seen, setups(hold_time)))
+        found = [each for trial in trials for each in trial.inconsistencies]
+        stays = np.concatenate([trial.stays for trial in trials])
+        brief = stays[stays < SHORT]
+        short.append(
+            f"hold {hold_time:.1f} s: {len(brief)} of {len(stays)} stays in lane "
+            f"changing under {SHORT} samples, longest {max(brief, default=0)}, gain "
+            f"there at most {max(trial.top_gain for trial in trials):.3f}"
+        )
         flips = np.mean([each.num_flips for each in found])
         frozen = np.mean([each.frozen_time for each in found])
         recovery = np.nanmedian([each.recovery_time for each in found])
@@ -67,6 +100,7 @@ def main() -> None:
             f"{hold_time:8.1f}  {len(found):6d}  {flips:10.2f}  {frozen:10.2f}"
             f"  {recovery:19.2f}  {gain:10.3f}"
         )
+    print("\n".join(short))
 
 
 if __name__ == "__main__":

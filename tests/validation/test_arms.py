@@ -7,6 +7,7 @@ from functools import cache
 
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 
 from costeer.drivers.driver import DriverParameters
 from costeer.drivers.population import participant_driver
@@ -26,7 +27,6 @@ from costeer.validation.arms import (
     arms_in_range,
     band,
     coefficients,
-    effective_damping,
     perturbation,
     shaken,
 )
@@ -107,6 +107,12 @@ def test_no_transient_is_left_in_the_measured_period() -> None:
     angles, _ = shaken(USUAL, "relaxed", perturbation())
     longer, _ = shaken(USUAL, "relaxed", np.tile(perturbation(), 2))
     assert coefficients(angles) == pytest.approx(coefficients(longer), rel=1e-4)
+
+
+def effective_damping(test: ArmTest) -> NDArray[np.float64]:
+    """Torque in phase with the rate, over it; negative where arms feed the motion."""
+    impedance = 1.0 / test.admittance
+    return np.asarray(impedance.imag / (2.0 * np.pi * test.frequency))
 
 
 def test_relaxed_arms_damp_the_motion_and_a_late_reflex_takes_that_away() -> None:

@@ -114,7 +114,7 @@ def drivers(
     Example:
         costeer drivers --participants 12 --seed 1 --plot out/population.svg
         costeer drivers --validate --out out/validation
-        costeer drivers --fit out/trial.parquet
+        costeer drivers --fit out/study/records/01-manual.parquet
         costeer drivers --threshold
     """
     task = _chosen(

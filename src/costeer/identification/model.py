@@ -132,7 +132,7 @@ def filter_inputs(
     distance = speed * eyes.near_time
     slope = (driver.tracking.lane_bias - drive.lane_offset[:-1]) / distance
     # The equations take arrays as well as the floats they are annotated with.
-    holding = np.asarray(holding_stiffness(drive.car, drive.column, speed))  # type: ignore[arg-type]  # arrays
+    holding = np.asarray(holding_stiffness(drive.car, drive.column, speed))  # type: ignore[arg-type]  # said above
     return FilterInputs(
         near_angle=np.arctan(slope) - yaw,
         far_angle=-yaw,

@@ -57,11 +57,11 @@ def drive_of(record: TrialRecord, car: str | None = None) -> Drive:
     position = signals["lateral_position"]
     road = RoadParameters()
     # The equations take arrays as well as the floats they are annotated with.
-    lane = np.asarray(lane_at(road, position))  # type: ignore[arg-type]  # arrays
+    lane = np.asarray(lane_at(road, position))  # type: ignore[arg-type]  # said above
     return Drive(
         lateral_position=position,
         lane=lane,
-        lane_offset=position - lane_centre(road, lane),  # type: ignore[arg-type]  # arrays
+        lane_offset=position - lane_centre(road, lane),  # type: ignore[arg-type]  # said above
         yaw_angle=signals["yaw_angle"],
         speed=signals["longitudinal_velocity"],
         steering_wheel_angle=signals["steering_wheel_angle"],

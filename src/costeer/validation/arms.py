@@ -277,15 +277,6 @@ def arms_in_range(test: ArmTest) -> NDArray[np.bool_]:
     return np.asarray((size >= limits.low) & (size <= limits.high))
 
 
-def effective_damping(test: ArmTest) -> Signal:
-    """Torque in phase with the rate, over it [N·m·s/rad], `(driver, frequency)`.
-
-    Negative where the arms feed the motion: a reflex that comes late does.
-    """
-    impedance = 1.0 / test.admittance
-    return np.asarray(impedance.imag / (2.0 * math.pi * test.frequency))
-
-
 def arm_rows(tests: Sequence[ArmTest]) -> list[ArmRow]:
     """The tests as a table: a row per task and frequency."""
     rows = []

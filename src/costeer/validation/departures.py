@@ -9,7 +9,7 @@ who corrects more firmly near the line departs less.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -18,14 +18,11 @@ from scipy import stats
 
 from costeer.base.array import Real
 from costeer.loop.columns import TrialRecord
-from costeer.loop.scenario import TrialSetup
-from costeer.loop.trial import simulate_trial
 from costeer.study.definitions import DEFAULTS, MeasureParameters
 from costeer.study.lane_keeping import gathered, lane_departures
 from costeer.study.measures import parameters_of
 from costeer.study.segments import Segments
 from costeer.study.trial_measures import Trial, prepare
-from costeer.validation.threads import in_threads
 
 Signal = NDArray[np.float64]
 
@@ -169,28 +166,6 @@ def departures(holds: Sequence[LaneHold]) -> Departures:
         distance=np.asarray(table.distance),
         gaussian_per_km=1000.0 * gaussian_departures(sdlp, mean, rate) / speed,
     )
-
-
-def driver_departures(
-    seed: int,
-    num_drivers: int,
-    jobs: int = 2,
-    progress: Callable[[int], None] | None = None,
-) -> Departures:
-    """Departures of a population in manual driving, one trial each.
-
-    Args:
-        seed: Of the population.
-        num_drivers: How many.
-        jobs: Threads.
-        progress: Called with the number of drivers just done.
-    """
-    manual = TrialSetup(seed=seed, condition="manual", intention="off")
-    setups = [manual._replace(participant=n) for n in range(1, num_drivers + 1)]
-    holds = in_threads(
-        lambda setup: lane_hold(simulate_trial(setup)), setups, jobs, progress
-    )
-    return departures(holds)
 
 
 def poisson_interval(count: int, exposure: Real) -> tuple[Real, Real]:
