@@ -95,3 +95,11 @@ def test_drivers_who_do_the_same_again_correlate_fully() -> None:
 def test_noise_shows_within_drivers() -> None:
     spreads = target_spreads(made_up(0.3), made_up(-0.3))
     assert all(s.within > 0.0 and s.retest < 1.0 for s in spreads)
+
+
+def test_unequal_numbers_of_values_are_weighed_as_in_an_analysis_of_variance() -> None:
+    # By hand: means 0 and 4, grand mean 3, mean squares 12 between and 1 within, and
+    # (4 - (1 + 9) / 4) / (2 - 1) = 1.5 values in the usual driver.
+    found = components([np.array([0.0]), np.array([3.0, 4.0, 5.0])])
+    assert found.within == pytest.approx(1.0)
+    assert found.between == pytest.approx(math.sqrt(11.0 / 1.5))
