@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from costeer.cli import main
-from costeer.study.measures import lane_change_rows, trial_row
+from costeer.study.measures import lane_change_rows, trial_row, trigger_rows
 from tests.study.synthetic import synthetic_record
 
 ROOT = Path(__file__).parents[2]
@@ -42,6 +42,7 @@ def test_the_python_of_the_page_runs(
 def test_the_page_describes_every_column() -> None:
     record = synthetic_record(length=2500.0)
     columns = {*trial_row(record), *lane_change_rows(record)[0]}
+    columns |= set(trigger_rows(record)[0])
     identity = {"participant", "condition", "strength", "change_duration", "order"}
     described = set(re.findall(r"`(\w+)`", PAGE))
     assert columns - identity - described == set()

@@ -86,6 +86,7 @@ def test_a_study_leaves_what_the_guide_says(whole: dict[str, bytes]) -> None:
         "report.html",
         "study.yaml",
         "trials.csv",
+        "triggers.csv",
     ]
 
 

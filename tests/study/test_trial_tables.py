@@ -8,9 +8,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from costeer.study.measures import lane_change_rows
+from costeer.study.measures import lane_change_rows, trigger_rows
 from costeer.study.trial_tables import (
     LANE_CHANGE_COLUMNS,
+    TRIGGER_COLUMNS,
     TrialRows,
     cell,
     write_csv,
@@ -49,12 +50,19 @@ def test_a_comma_in_a_text_stays_in_its_cell(tmp_path: Path) -> None:
     assert (tmp_path / "t.csv").read_bytes() == b'a,b\n"x, y",1\n'
 
 
-def test_lane_changes_are_headed_even_if_there_are_none(tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    ("name", "columns"),
+    [("lane_changes.csv", LANE_CHANGE_COLUMNS), ("triggers.csv", TRIGGER_COLUMNS)],
+)
+def test_events_are_headed_even_if_there_are_none(
+    tmp_path: Path, name: str, columns: tuple[str, ...]
+) -> None:
     write_trial_tables(tmp_path, [TrialRows({"participant": 1}, [])])
-    text = (tmp_path / "lane_changes.csv").read_text(encoding="utf-8")
-    assert text == ",".join(LANE_CHANGE_COLUMNS) + "\n"
+    text = (tmp_path / name).read_text(encoding="utf-8")
+    assert text == ",".join(columns) + "\n"
 
 
-def test_that_head_is_the_one_of_a_study_with_lane_changes() -> None:
-    changes = lane_change_rows(synthetic_record(length=2000.0))
-    assert tuple(changes[0]) == LANE_CHANGE_COLUMNS
+def test_those_heads_are_the_ones_of_a_study_with_lane_changes() -> None:
+    record = synthetic_record(length=2000.0)
+    assert tuple(lane_change_rows(record)[0]) == LANE_CHANGE_COLUMNS
+    assert tuple(trigger_rows(record)[0]) == TRIGGER_COLUMNS

@@ -20,7 +20,6 @@ from costeer.validation.departures import (
     departures,
     gaussian_departures,
     lane_hold,
-    poisson_interval,
     summarise,
 )
 from costeer.validation.threads import in_threads
@@ -191,12 +190,6 @@ def test_who_keeps_no_lane_is_left_out() -> None:
     assert summarise(departures([kept, never])) == summarise(departures([kept]))
     with pytest.raises(ValueError, match="no driver has any lane keeping"):
         summarise(departures([never]))
-
-
-def test_the_interval_is_that_of_poisson_counts() -> None:
-    # Garwood's table: 0 (0 to 3.689), 5 (1.623 to 11.668).
-    assert poisson_interval(0, 1.0) == pytest.approx((0.0, 3.689), abs=5e-4)
-    assert poisson_interval(5, 10.0) == pytest.approx((0.1623, 1.1668), abs=5e-5)
 
 
 @pytest.mark.slow

@@ -41,6 +41,12 @@ class MeasureParameters(NamedTuple):
             record's own value goes before it.
         frozen_gain_rate: Slower than this a fade stands still [1/s]. Source:
             assumed, a fortieth of the fastest change that Eq. (10) makes.
+        episode_duration: What follows a false trigger within it is its cost [s].
+            Source: assumed, the longest path of Table IV and 2 s for its end.
+        settled_offset: Largest distance from the lane's centre of a settled car [m].
+            Source: assumed, as for the lock of the trigger.
+        settled_duration: A car is settled if it stays so long straight, within
+            `yaw_threshold`, and near the centre [s]. Source: assumed, as above.
     """
 
     lane_width: float = 3.5
@@ -57,6 +63,9 @@ class MeasureParameters(NamedTuple):
     recovery_gain: float = 0.95
     replan_gain: float = 0.05
     frozen_gain_rate: float = 0.05
+    episode_duration: float = 10.0
+    settled_offset: float = 0.3
+    settled_duration: float = 0.5
 
 
 DEFAULTS = MeasureParameters()

@@ -22,7 +22,11 @@ from costeer.study.folder import RECORDS, StudyFolder, read_study
 from costeer.study.outcome import WITHIN, PairRow, StudyTests, SummaryRow
 from costeer.study.quantities import WORKLOAD, Quantity
 from costeer.study.statistics import MEASURES, Measure, study_tests
-from costeer.study.trial_tables import LANE_CHANGES_FILE, TRIALS_FILE
+from costeer.study.trial_tables import (
+    LANE_CHANGES_FILE,
+    TRIALS_FILE,
+    TRIGGERS_FILE,
+)
 
 LANE_LINE = -1.75
 """Lateral position of the line between the lanes [m]: half a lane width, to the right
@@ -44,6 +48,7 @@ class StudyMaterial(NamedTuple):
         study: The folder and its configuration.
         trials: Rows of `trials.csv`.
         lane_changes: Rows of `lane_changes.csv`.
+        triggers: Rows of `triggers.csv`; None if an older costeer made the tables.
         tests: Tests, pairs, summaries and what was dropped.
         records: Path of each trial record by participant and condition.
         metadata: What each of them says of itself, in the same order.
@@ -52,6 +57,7 @@ class StudyMaterial(NamedTuple):
     study: StudyFolder
     trials: pd.DataFrame
     lane_changes: pd.DataFrame
+    triggers: pd.DataFrame | None
     tests: StudyTests
     records: dict[tuple[int, str], Path]
     metadata: tuple[dict[str, object], ...]
@@ -74,6 +80,7 @@ def read_material(folder: Path) -> StudyMaterial:
         study=study,
         trials=trials,
         lane_changes=lane_changes,
+        triggers=_read_triggers(folder / TRIGGERS_FILE, measured),
         tests=tests,
         records=records,
         metadata=tuple(read_record(path, ()).metadata for path in records.values()),
@@ -85,6 +92,15 @@ def _workload(trials: pd.DataFrame) -> list[Measure]:
     names = [each.name for each in WORKLOAD]
     given = [name for name in names if name in trials and trials[name].notna().any()]
     return [Measure(name) for name in given]
+
+
+def _read_triggers(file: Path, measured: set[tuple[int, str]]) -> pd.DataFrame | None:
+    """The triggers of the trials that were measured; None if nobody judged them."""
+    if not file.exists():
+        return None
+    table = _read_table(file)
+    keys = zip(table["participant"], table["condition"], strict=True)
+    return table[[key in measured for key in keys]]
 
 
 def _read_table(file: Path) -> pd.DataFrame:

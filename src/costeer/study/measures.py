@@ -1,4 +1,4 @@
-"""The rows of `trials.csv` and `lane_changes.csv`: measures of a record in SI units.
+"""The rows of `trials.csv`, `lane_changes.csv` and `triggers.csv`, in SI units.
 
 What a measure is stands in the files beside this one and in docs/measures.md. What
 could not be computed is NaN here; `trial_measures` says why.
@@ -20,6 +20,7 @@ from costeer.study.manoeuvres import (
 )
 from costeer.study.segments import LaneChange, Segments
 from costeer.study.trial_measures import Trial, prepare, trial_measures
+from costeer.study.trigger_costs import trigger_costs
 
 Row = dict[str, object]
 
@@ -76,6 +77,22 @@ def lane_change_rows(
         }
         for change in trial.segments.changes
     ]
+
+
+def trigger_rows(
+    record: TrialRecord, parameters: MeasureParameters = DEFAULTS
+) -> list[Row]:
+    """The rows of a trial in `triggers.csv`, in order of time.
+
+    Args:
+        record: The trial.
+        parameters: Thresholds of the measures.
+
+    Returns:
+        Per trigger and per missed crossing, column names and values.
+    """
+    trial = prepare(record.columns, parameters_of(record, parameters))
+    return [{**_identity(record), **each} for each in trigger_costs(trial)]
 
 
 def parameters_of(

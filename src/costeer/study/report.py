@@ -42,9 +42,9 @@ def write_report(
 ) -> Path:
     """Write `tests.csv`, `pairs.csv`, `figures/` and `report.html` of a study.
 
-    The folder holds `study.yaml`, `trials.csv`, `lane_changes.csv` and `records/`;
-    of people or of virtual drivers, finished or not. The same folder gives the same
-    bytes.
+    The folder holds `study.yaml`, `trials.csv`, `lane_changes.csv`, `triggers.csv`
+    and `records/`; of people or of virtual drivers, finished or not. The same folder
+    gives the same bytes.
 
     Args:
         folder: Of the study.

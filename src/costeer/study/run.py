@@ -118,7 +118,7 @@ def run_study(
 
 
 def remake_tables(path: Path, jobs: int | None = None) -> int:
-    """Write `trials.csv` and `lane_changes.csv` again from the records on disk.
+    """Write the tables of measures again from the records on disk.
 
     Args:
         path: A study's folder, finished or not.

@@ -1,4 +1,4 @@
-"""`trials.csv` and `lane_changes.csv`: a row per trial, a row per lane change.
+"""`trials.csv`, `lane_changes.csv`, `triggers.csv`: rows per trial and per event.
 
 Numbers are written so that they read back bit for bit; what is undefined, such as
 the duration of a lane change in manual driving, is an empty cell.
@@ -16,9 +16,11 @@ from typing import NamedTuple
 import numpy as np
 
 from costeer.study.folder import write_text
+from costeer.study.trigger_costs import COST_COLUMNS
 
 TRIALS_FILE = "trials.csv"
 LANE_CHANGES_FILE = "lane_changes.csv"
+TRIGGERS_FILE = "triggers.csv"
 
 LANE_CHANGE_COLUMNS = (
     "participant",
@@ -45,6 +47,22 @@ LANE_CHANGE_COLUMNS = (
 )
 """Head of `lane_changes.csv`, for a study in which nobody changed lanes."""
 
+TRIGGER_COLUMNS = (
+    "participant",
+    "condition",
+    "strength",
+    "change_duration",
+    "kind",
+    "time",
+    "direction",
+    "crossing_time",
+    "lead",
+    "start_time",
+    "end_time",
+    *COST_COLUMNS,
+)
+"""Head of `triggers.csv`, for a study without a trigger and without a miss."""
+
 Row = Mapping[str, object]
 
 
@@ -54,17 +72,21 @@ class TrialRows(NamedTuple):
     Attributes:
         measures: Its row of `trials.csv`.
         lane_changes: Its rows of `lane_changes.csv`, in time.
+        triggers: Its rows of `triggers.csv`, in time.
     """
 
     measures: Row
     lane_changes: Sequence[Row]
+    triggers: Sequence[Row] = ()
 
 
 def write_trial_tables(folder: Path, trials: Sequence[TrialRows]) -> None:
-    """Write both tables, rows in the order of the trials."""
+    """Write the three tables, rows in the order of the trials."""
     write_csv(folder / TRIALS_FILE, [each.measures for each in trials])
     changes = [row for each in trials for row in each.lane_changes]
     write_csv(folder / LANE_CHANGES_FILE, changes, LANE_CHANGE_COLUMNS)
+    events = [row for each in trials for row in each.triggers]
+    write_csv(folder / TRIGGERS_FILE, events, TRIGGER_COLUMNS)
 
 
 def write_csv(file: Path, rows: Sequence[Row], columns: Sequence[str] = ()) -> None:

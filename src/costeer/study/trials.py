@@ -11,7 +11,7 @@ from costeer.study.conditions import CONDITION_NAMES
 from costeer.study.configuration import StudySettings, trial_setup
 from costeer.study.design import Trial, plan_trials
 from costeer.study.folder import StudyFolder, record_path
-from costeer.study.measures import lane_change_rows, trial_row
+from costeer.study.measures import lane_change_rows, trial_row, trigger_rows
 from costeer.study.trial_tables import TrialRows
 
 HASH_FIELD = "study_hash"
@@ -84,6 +84,10 @@ def believed_record(folder: StudyFolder, trial: Trial) -> TrialRecord | None:
 
 
 def _measured(trial: Trial, record: TrialRecord, resumed: bool) -> TrialDone:
-    rows = TrialRows(trial_row(record, trial.order), lane_change_rows(record))
+    rows = TrialRows(
+        measures=trial_row(record, trial.order),
+        lane_changes=lane_change_rows(record),
+        triggers=trigger_rows(record),
+    )
     time = record.columns["time"]
     return TrialDone(rows, float(time[-1] - time[0]), resumed)

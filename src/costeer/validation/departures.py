@@ -14,20 +14,17 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy import stats
 
 from costeer.base.array import Real
 from costeer.loop.columns import TrialRecord
 from costeer.study.definitions import DEFAULTS, MeasureParameters
 from costeer.study.lane_keeping import gathered, lane_departures
 from costeer.study.measures import parameters_of
+from costeer.study.rates import poisson_interval
 from costeer.study.segments import Segments
 from costeer.study.trial_measures import Trial, prepare
 
 Signal = NDArray[np.float64]
-
-CONFIDENCE = 0.95
-"""Of the interval about a counted rate."""
 
 
 class LaneHold(NamedTuple):
@@ -166,14 +163,6 @@ def departures(holds: Sequence[LaneHold]) -> Departures:
         distance=np.asarray(table.distance),
         gaussian_per_km=1000.0 * gaussian_departures(sdlp, mean, rate) / speed,
     )
-
-
-def poisson_interval(count: int, exposure: Real) -> tuple[Real, Real]:
-    """Interval of a rate from a count, Garwood (1936) [1 per unit of exposure]."""
-    tail = (1.0 - CONFIDENCE) / 2.0
-    low = stats.chi2.ppf(tail, 2 * count) / 2.0 if count else 0.0
-    high = stats.chi2.ppf(1.0 - tail, 2 * count + 2) / 2.0
-    return float(low / exposure), float(high / exposure)
 
 
 def summarise(found: Departures) -> DepartureSummary:

@@ -79,7 +79,12 @@ def durations_table(material: StudyMaterial) -> Table:
 
 
 def _median_text(table: pd.DataFrame, name: str, column: str, digits: int) -> str:
-    values = table.loc[table["condition"] == name, column].dropna()
+    return spread_text(table.loc[table["condition"] == name, column], digits)
+
+
+def spread_text(column: pd.Series, digits: int) -> str:
+    """Return the median, below it the 10th and 90th percentile; or a dash."""
+    values = column.dropna()
     if values.empty:
         return NOTHING
     low, middle, high = (float(values.quantile(q)) for q in (0.1, 0.5, 0.9))

@@ -110,6 +110,11 @@ def thresholds_table() -> Table:
         ("and early up to", f"{DEFAULTS.early_horizon:g} s before the crossing"),
         ("Triggers are one within", f"{DEFAULTS.trigger_merge:g} s"),
         ("An inconsistency is over from a gain of", f"{DEFAULTS.recovery_gain:g}"),
+        ("A false trigger is followed for", f"{DEFAULTS.episode_duration:g} s"),
+        (
+            "A settled car is straight and this near its lane's centre",
+            f"{DEFAULTS.settled_offset:g} m for {DEFAULTS.settled_duration:g} s",
+        ),
     )
     return Table(
         name="thresholds",

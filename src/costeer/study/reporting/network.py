@@ -43,7 +43,7 @@ def network_table(material: StudyMaterial) -> Table | None:
         note="From its file: results on drivers held out of its training, in manual "
         "driving, per sample and per trigger, with 95 % intervals where the file has "
         "them. None of these drivers is in a study. How it does in this study stands "
-        "in the table before.",
+        "in the tables before.",
         header=("Fact", "Value"),
         rows=(*_training_rows(facts), *_test_rows(facts.get("test", {}))),
         num_labels=2,

@@ -11,6 +11,7 @@ from costeer.study.reporting.comparisons import shown_quantities
 from costeer.study.reporting.frame import Picture, Section
 from costeer.study.reporting.network import network_table
 from costeer.study.reporting.tables import Table
+from costeer.study.reporting.trigger_tables import trigger_costs_table
 
 
 def page_sections(
@@ -78,9 +79,9 @@ def _effort(material: StudyMaterial, pictures: Mapping[str, Picture]) -> Section
 
 
 def _intention(material: StudyMaterial, pictures: Mapping[str, Picture]) -> Section:
-    network = network_table(material)
     items = (*_chosen(pictures, ("detection",)), event_tables.detection_table(material))
-    items += (network,) if network else ()
+    optional = (trigger_costs_table(material), network_table(material))
+    items += tuple(each for each in optional if each is not None)
     text = _INTENTION_TEXTS.get(
         str(material.study.configuration.get("intention", "network")), ()
     )
@@ -168,10 +169,10 @@ def _making(material: StudyMaterial) -> Section:
     text = (
         "This page, the tables and the figures hold nothing but what follows from the "
         "records and settings below; there is no date in them. The folder holds the "
-        "records (records/), the tables as CSV (trials, lane_changes, tests, pairs, "
-        "summaries, dropped) and the figures as SVG (figures/). costeer report makes "
-        "all but the records again; with people it leaves the first two tables, which "
-        "hold their answers, as they are.",
+        "records (records/), the tables as CSV (trials, lane_changes, triggers, tests, "
+        "pairs, summaries, dropped) and the figures as SVG (figures/). costeer report "
+        "makes all but the records again; with people it leaves the first three "
+        "tables, which hold their answers, as they are.",
     )
     items = (
         making.settings_table(material),
