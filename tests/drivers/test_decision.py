@@ -26,7 +26,12 @@ from costeer.sensing.measurement import Measurement
 from tests.drivers.samples import DT, NO_LEADER, RIGHT, SPEED, driving, leader
 
 PARAMETERS = DecisionParameters()
-MEDIAN = Draws(duration_normal=0.0, preparation_normal=0.0, glance_uniform=0.5)
+MEDIAN = Draws(
+    duration_normal=0.0,
+    preparation_normal=0.0,
+    glance_uniform=0.5,
+    abandoned_uniform=0.5,
+)
 
 
 def around(
@@ -203,7 +208,12 @@ def test_planned_duration_is_log_normal_around_the_drivers_median(
 
 def test_plans_are_drawn_once_per_lane_change() -> None:
     planned = first_step(leader(20.0, SPEED - 3.0))
-    other = Draws(duration_normal=3.0, preparation_normal=3.0, glance_uniform=0.99)
+    other = Draws(
+        duration_normal=3.0,
+        preparation_normal=3.0,
+        glance_uniform=0.99,
+        abandoned_uniform=0.0,
+    )
     next_state = decision.step(
         PARAMETERS, planned, around(driving(0.3), leader(20.2, 16.0)), other, DT
     )

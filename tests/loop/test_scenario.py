@@ -31,6 +31,10 @@ REFUSED = {
     "participant is -1; give a number from 0": {"participant": -1},
     "seed is -5; give a number from 0": {"seed": -5},
     "plant_steps is 2; give a number from 4 to 64": {"plant_steps": 2},
+    "abandoned_share is 1.5; give a number from 0.0 to 1.0": {"abandoned_share": 1.5},
+    "abandoned_share is nan; give a number": {"abandoned_share": math.nan},
+    "wander_factor is -1; give a number from 0.0 to 5.0": {"wander_factor": -1},
+    "wander_factor is 5.1; give a number": {"wander_factor": 5.1},
     "change_duration is nan; give a number from 1 to 30 s": {
         "change_duration": math.nan
     },
@@ -105,3 +109,23 @@ def test_the_driver_follows_from_seed_and_participant_alone() -> None:
     assert trial_driver(STRONG) == trial_driver(other)
     assert trial_driver(STRONG) != trial_driver(STRONG._replace(participant=2))
     assert trial_driver(STRONG._replace(driver="hands-off")).arm.hands_on == 0.0
+
+
+@pytest.mark.parametrize("factor", [0.0, 1.0, 1.5, 2.0])
+def test_the_factor_scales_the_wander_and_nothing_else(factor: float) -> None:
+    drawn = trial_driver(STRONG)
+    wanders = trial_driver(STRONG._replace(wander_factor=factor))
+    own = drawn.tracking.wander_deviation
+    assert wanders.tracking.wander_deviation == pytest.approx(factor * own)
+    assert own > 0.0
+    tracking = wanders.tracking._replace(wander_deviation=own)
+    assert wanders._replace(tracking=tracking) == drawn
+
+
+def test_the_share_of_given_up_lane_changes_reaches_the_decision_alone() -> None:
+    drawn = trial_driver(STRONG)
+    fickle = trial_driver(STRONG._replace(abandoned_share=0.3))
+    assert fickle.decision.abandoned_share == 0.3
+    assert drawn.decision.abandoned_share == 0.0
+    faithful = fickle.decision._replace(abandoned_share=0.0)
+    assert fickle._replace(decision=faithful) == drawn

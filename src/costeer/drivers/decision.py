@@ -58,6 +58,13 @@ class DecisionParameters(NamedTuple):
             those with a glance [-]. Source: assumed.
         settling_time: Pause after a lane change before the next decision [s].
             Source: assumed.
+        abandoned_share: Share of decided lane changes that are given up before the
+            line, for another car that comes up, say [-]. Source: assumed, none;
+            drives to learn intention from have some.
+        abandoned_latest: The latest moment of giving up, over the planned duration
+            [-]. Source: assumed, a fifth of the way to the other lane.
+        abandoned_pause: From giving up until the next decision [s]. Source: assumed,
+            the other car passes.
     """
 
     decides: Real = 1.0
@@ -73,6 +80,9 @@ class DecisionParameters(NamedTuple):
     glance_share: Real = 0.84
     shoulder_share: Real = 0.42
     settling_time: Real = 1.0
+    abandoned_share: Real = 0.0
+    abandoned_latest: Real = 0.35
+    abandoned_pause: Real = 3.0
 
 
 class DecisionState(NamedTuple):
@@ -86,8 +96,11 @@ class DecisionState(NamedTuple):
         impatience: How long a slower leader has been in the way [s].
         looks: Whether this driver looks before this change.
         looks_over_shoulder: Whether one of the looks is over the shoulder.
-        started: Whether steering starts at this step.
+        started: Whether steering to a lane starts at this step.
         decided: Whether the decision fell at this step.
+        gives_up_after: From the decision until this lane change is given up [s];
+            beyond all times if it is not.
+        pause: Until the next decision may fall in this phase [s].
     """
 
     phase: Real
@@ -99,6 +112,12 @@ class DecisionState(NamedTuple):
     looks_over_shoulder: Flag
     started: Flag
     decided: Flag
+    gives_up_after: Real
+    pause: Real
+
+
+NEVER = 1e9
+"""A time that does not come [s]."""
 
 
 class Draws(NamedTuple):
@@ -108,11 +127,13 @@ class Draws(NamedTuple):
         duration_normal: Standard normal, planned duration.
         preparation_normal: Standard normal, preparation time.
         glance_uniform: In [0, 1), whether there is a glance.
+        abandoned_uniform: In [0, 1), whether and when it is given up.
     """
 
     duration_normal: Real
     preparation_normal: Real
     glance_uniform: Real
+    abandoned_uniform: Real
 
 
 @compiled
@@ -128,6 +149,8 @@ def initial_state() -> DecisionState:
         looks_over_shoulder=False,
         started=False,
         decided=False,
+        gives_up_after=NEVER,
+        pause=0.0,
     )
 
 
@@ -177,6 +200,38 @@ def wants_to_return(
 
 
 @compiled
+def gives_up(state: DecisionState) -> Flag:
+    """Whether the lane change under way is given up now."""
+    preparing = (state.phase == PREPARING) | (state.phase == PREPARING_RETURN)
+    changing = (state.phase == CHANGING) | (state.phase == RETURNING)
+    since = state.time_in_phase + xp.select(changing, state.preparation_time, 0.0)
+    return (preparing | changing) & (since >= state.gives_up_after)
+
+
+@compiled
+def abandoned_after(
+    parameters: DecisionParameters,
+    abandoned_uniform: Real,
+    preparation_time: Real,
+    change_duration: Real,
+) -> Real:
+    """From a decision until it is given up [s], `NEVER` for most.
+
+    The moment is uniform from the decision to `abandoned_latest` of the change.
+
+    Args:
+        parameters: How many are given up, and how late.
+        abandoned_uniform: In [0, 1).
+        preparation_time: From the decision until steering [s].
+        change_duration: Planned [s].
+    """
+    share = parameters.abandoned_share
+    place = abandoned_uniform / xp.maximum(share, 1e-9)
+    latest = preparation_time + parameters.abandoned_latest * change_duration
+    return xp.select(abandoned_uniform < share, place * latest, NEVER)
+
+
+@compiled
 def next_phase(
     parameters: DecisionParameters,
     state: DecisionState,
@@ -188,16 +243,56 @@ def next_phase(
     settled = time >= state.change_duration + parameters.settling_time
     overtake = wants_to_overtake(parameters, state.impatience, around)
     back = wants_to_return(parameters, around.measurement, around.leader)
+    rested = time >= state.pause
     phase = state.phase
     done = (
-        ((phase == CRUISING) & overtake)
+        ((phase == CRUISING) & overtake & rested)
         | ((phase == PREPARING) & prepared)
         | ((phase == CHANGING) & settled)
-        | ((phase == PASSING) & back)
+        | ((phase == PASSING) & back & rested)
         | ((phase == PREPARING_RETURN) & prepared)
     )
     home = (phase == RETURNING) & settled
-    return xp.select(home, CRUISING, xp.select(done, phase + 1.0, phase))
+    onwards = xp.select(home, CRUISING, xp.select(done, phase + 1.0, phase))
+    stays = xp.select(phase >= PREPARING_RETURN, PASSING, CRUISING)
+    return xp.select(gives_up(state), stays, onwards)
+
+
+class Plan(NamedTuple):
+    """What a decision fixes.
+
+    Attributes:
+        preparation_time: From the decision until steering [s].
+        change_duration: Planned for this lane change [s].
+        gives_up_after: From the decision until it is given up [s].
+    """
+
+    preparation_time: Real
+    change_duration: Real
+    gives_up_after: Real
+
+
+@compiled
+def planned(parameters: DecisionParameters, phase: Real, draws: Draws) -> Plan:
+    """Times of a lane change that is decided in `phase`."""
+    median = xp.select(
+        phase == PREPARING,
+        parameters.preparation_time,
+        parameters.return_preparation_time,
+    )
+    preparation = median * xp.exp(
+        parameters.preparation_spread * draws.preparation_normal
+    )
+    duration = parameters.change_duration * xp.exp(
+        parameters.change_duration_spread * draws.duration_normal
+    )
+    return Plan(
+        preparation_time=preparation,
+        change_duration=duration,
+        gives_up_after=abandoned_after(
+            parameters, draws.abandoned_uniform, preparation, duration
+        ),
+    )
 
 
 @compiled
@@ -219,33 +314,31 @@ def step(
     """
     phase = next_phase(parameters, state, around)
     new = phase != state.phase
+    abandoned = gives_up(state)
     decided = new & ((phase == PREPARING) | (phase == PREPARING_RETURN))
-    median = xp.select(
-        phase == PREPARING,
-        parameters.preparation_time,
-        parameters.return_preparation_time,
-    )
-    preparation = median * xp.exp(
-        parameters.preparation_spread * draws.preparation_normal
-    )
-    duration = parameters.change_duration * xp.exp(
-        parameters.change_duration_spread * draws.duration_normal
-    )
+    plan = planned(parameters, phase, draws)
     looks = draws.glance_uniform < parameters.glance_share
     over_shoulder = draws.glance_uniform < parameters.shoulder_share
     waits = (phase == CRUISING) & in_the_way(parameters, around)
+    steers_back = abandoned & ((state.phase == CHANGING) | (state.phase == RETURNING))
+    starts = new & ((phase == CHANGING) | (phase == RETURNING))
+    pause = xp.select(abandoned, parameters.abandoned_pause, 0.0)
     return DecisionState(
         phase=phase,
         time_in_phase=xp.select(new, 0.0, state.time_in_phase + dt),
-        preparation_time=xp.select(decided, preparation, state.preparation_time),
-        change_duration=xp.select(decided, duration, state.change_duration),
+        preparation_time=xp.select(
+            decided, plan.preparation_time, state.preparation_time
+        ),
+        change_duration=xp.select(decided, plan.change_duration, state.change_duration),
         impatience=xp.select(waits, state.impatience + dt, 0.0),
         looks=xp.select(decided, looks, state.looks),
         looks_over_shoulder=xp.select(
             decided, over_shoulder, state.looks_over_shoulder
         ),
-        started=new & ((phase == CHANGING) | (phase == RETURNING)),
+        started=starts | steers_back,
         decided=decided,
+        gives_up_after=xp.select(decided, plan.gives_up_after, state.gives_up_after),
+        pause=xp.select(new, pause, state.pause),
     )
 
 

@@ -123,6 +123,7 @@ class DriverNoise(NamedTuple):
     glance_side_uniform: Real
     leader_uniform: Real
     tracker_uniform: Real
+    abandoned_uniform: Real
 
 
 NORMAL_DRAWS = 9
@@ -172,6 +173,7 @@ def decide(
         duration_normal=noise.change_duration,
         preparation_normal=noise.preparation_time,
         glance_uniform=noise.look_uniform,
+        abandoned_uniform=noise.abandoned_uniform,
     )
     around = Surroundings(
         measurement=perception.measurement,
@@ -214,7 +216,8 @@ def aim(
     """Let the aim wander and, when steering starts, plan the own path."""
     wandered = tracking.wander(parameters.tracking, state.tracking, noise.wander, dt)
     road = knowledge.road
-    away = xp.select(decided.phase == decision.CHANGING, road.overtaking_side, 0.0)
+    out = (decided.phase == decision.CHANGING) | (decided.phase == decision.PASSING)
+    away = xp.select(out, road.overtaking_side, 0.0)
     path = tracking.planned(
         parameters.tracking,
         road,

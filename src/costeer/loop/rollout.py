@@ -63,9 +63,13 @@ class Script(NamedTuple):
 
 @compiled
 def intention_sample(measurement: Measurement) -> IntentionSample:
-    """Eq. (1): the six signals, mirrored so that the adjacent lane is on the right."""
+    """Eq. (1): the six signals, mirrored so that the adjacent lane is on the right.
+
+    Of a head that the tracker has lost the network is told so.
+    """
+    seen = xp.select(measurement.head_yaw_valid, measurement.head_yaw, math.nan)
     sample = IntentionSample(
-        head_yaw=measurement.head_yaw,
+        head_yaw=seen,
         longitudinal_acceleration=measurement.longitudinal_acceleration,
         longitudinal_velocity=measurement.longitudinal_velocity,
         steering_wheel_angle=measurement.steering_wheel_angle,

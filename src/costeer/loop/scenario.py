@@ -72,6 +72,9 @@ class TrialSetup(NamedTuple):
         prediction_horizon: Of the scripted intention, g of Eq. (2) [s].
         follows_plan: The system's lane changes begin and last as this driver plans
             each one; for pilot runs in which nobody disagrees.
+        abandoned_share: Share of lane changes that the driver gives up on the way [-].
+        wander_factor: The driver's wander in the lane is so much larger than that of
+            the population [-].
     """
 
     participant: int = 1
@@ -94,6 +97,8 @@ class TrialSetup(NamedTuple):
     inconsistency_threshold: Real = ConsistencyParameters().inconsistency_threshold
     prediction_horizon: Real = PREDICTION_HORIZON
     follows_plan: bool = False
+    abandoned_share: Real = 0.0
+    wander_factor: Real = 1.0
 
 
 SLOWEST = 12.0
@@ -122,6 +127,8 @@ _RANGES = {
     "participant": _Range(0, 10_000_000, "-"),
     "seed": _Range(0, 2**63 - 1, "-"),
     "plant_steps": _Range(4, 64, "-"),
+    "abandoned_share": _Range(0.0, 1.0, "-"),
+    "wander_factor": _Range(0.0, 5.0, "-"),
 }
 
 
@@ -184,7 +191,13 @@ def trial_driver(setup: TrialSetup) -> DriverParameters:
     """The driver of a trial, drawn from the population by seed and participant."""
     if setup.driver == "hands-off":
         return hands_off(setup.speed)
-    return participant_driver(setup.seed, setup.participant, setup.speed)
+    drawn = participant_driver(setup.seed, setup.participant, setup.speed)
+    aim, decides = drawn.tracking, drawn.decision
+    wander = aim.wander_deviation * setup.wander_factor
+    return drawn._replace(
+        tracking=aim._replace(wander_deviation=wander),
+        decision=decides._replace(abandoned_share=setup.abandoned_share),
+    )
 
 
 def controller_parameters(

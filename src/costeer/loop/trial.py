@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from costeer.base.array import Real
 from costeer.drivers.population import POPULATION_VERSION
-from costeer.intention.features import NUM_FEATURES
+from costeer.intention.features import NUM_FEATURES, NUM_INPUTS, NUM_SCALED
 from costeer.intention.gru import NetworkWeights
 from costeer.intention.wavefront import (
     WavefrontWeights,
@@ -70,9 +70,10 @@ def idle_weights() -> WavefrontWeights:
     units = 2
     return wavefront_weights(
         NetworkWeights(
-            feature_mean=np.zeros(NUM_FEATURES),
-            feature_scale=np.ones(NUM_FEATURES),
-            input_weights=np.zeros((3, units, NUM_FEATURES), np.float32),
+            feature_mean=np.zeros(NUM_SCALED),
+            feature_scale=np.ones(NUM_SCALED),
+            dispensable=np.zeros(NUM_FEATURES),
+            input_weights=np.zeros((3, units, NUM_INPUTS), np.float32),
             hidden_weights=np.zeros((3, units, units), np.float32),
             input_bias=np.zeros((3, units), np.float32),
             hidden_bias=np.zeros((3, units), np.float32),
