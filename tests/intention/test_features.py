@@ -2,17 +2,32 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from costeer.intention.features import (
     FEATURE_LIMIT,
     FEATURES,
+    INPUTS,
+    NUM_FEATURES,
+    NUM_SCALED,
+    VARIANTS,
     IntentionSample,
     adjacent_side,
+    approach_series,
+    approach_velocity,
     facing,
     feature_series,
+    full_windows,
+    hide,
+    mirrored,
+    network_inputs,
     scaled,
+    valid_samples,
 )
 
 SAMPLE = IntentionSample(
@@ -70,3 +85,93 @@ def test_scaling_keeps_nan_and_holds_the_rest_within_the_limit() -> None:
     np.testing.assert_array_equal(
         result[1:], [FEATURE_LIMIT, -FEATURE_LIMIT, 1.0, 0.5, 0.0]
     )
+
+
+@given(st.floats(1.0, 60.0), st.floats(1.0, 60.0), st.floats(-0.2, 0.2))
+def test_the_same_motion_in_the_lane_approaches_alike_at_every_speed(
+    one_speed: float, other_speed: float, sine: float
+) -> None:
+    # Scaled so that v sin(yaw) is the same and the larger yaw keeps its sine.
+    lateral = sine * min(one_speed, other_speed)
+    one, other = (
+        approach_velocity(speed, math.asin(lateral / speed))
+        for speed in (one_speed, other_speed)
+    )
+    # Two functions and their inverse, each rounded to 1e-16, of at most 12 m/s.
+    assert one == pytest.approx(-lateral, abs=1e-13)
+    assert other == pytest.approx(one, abs=1e-13)
+
+
+def test_a_car_that_points_right_approaches_the_line_on_the_right() -> None:
+    assert approach_velocity(20.0, -0.02) > 0.0
+    assert approach_velocity(20.0, 0.0) == 0.0
+
+
+def test_an_approach_without_velocity_or_yaw_is_unknown() -> None:
+    rows = np.tile(np.array(SAMPLE), (4, 1))
+    rows[1, FEATURES.index("yaw_angle")] = np.nan
+    rows[2, FEATURES.index("longitudinal_velocity")] = np.nan
+    rows[3, FEATURES.index("yaw_angle")] = np.inf
+    np.testing.assert_array_equal(
+        np.isnan(approach_series(rows)), [False, True, True, True]
+    )
+
+
+def test_a_series_in_the_mirror_is_that_of_the_other_side() -> None:
+    rows = np.random.default_rng(0).normal(size=(20, 6))
+    side = np.where(np.arange(20) < 7, -1, 1).astype(np.int8)
+    named = dict(zip(FEATURES, rows.T, strict=True))
+    series = feature_series(named, side)
+    np.testing.assert_array_equal(mirrored(series), feature_series(named, -side))
+    np.testing.assert_array_equal(mirrored(mirrored(series)), series)
+
+
+def test_a_missing_signal_is_its_mean_and_raises_its_flag_alone() -> None:
+    rng = np.random.default_rng(1)
+    rows = rng.normal(size=(NUM_FEATURES, NUM_FEATURES))
+    mean, scale = rng.normal(size=NUM_SCALED), rng.uniform(0.5, 2.0, NUM_SCALED)
+    whole = network_inputs(rows, mean, scale)
+    assert whole.shape[1] == len(INPUTS)
+    assert (whole[:, NUM_SCALED:] == 0.0).all()
+    np.fill_diagonal(rows, np.nan)
+    values, flags = np.split(network_inputs(rows, mean, scale), [NUM_SCALED], axis=1)
+    np.testing.assert_array_equal(flags, np.eye(NUM_FEATURES))
+    lost = np.isnan(np.column_stack([rows, approach_series(rows)]))
+    np.testing.assert_array_equal(values == 0.0, lost)
+    np.testing.assert_array_equal(values[~lost], whole[:, :NUM_SCALED][~lost])
+
+
+@pytest.mark.parametrize("broken", [math.nan, math.inf])
+def test_only_a_head_can_be_lost(broken: float) -> None:
+    features = np.zeros((NUM_FEATURES, NUM_FEATURES))
+    np.fill_diagonal(features, broken)
+    lost_head = [n == "head_yaw" and math.isnan(broken) for n in FEATURES]
+    np.testing.assert_array_equal(valid_samples(features), lost_head)
+    absent = ("head_yaw", "yaw_angle")
+    np.testing.assert_array_equal(
+        valid_samples(features, absent), [n in absent for n in FEATURES]
+    )
+
+
+def test_a_window_is_full_after_180_valid_samples() -> None:
+    features = np.zeros((600, 6))
+    features[250, 3] = np.nan
+    full = np.flatnonzero(full_windows(features))
+    np.testing.assert_array_equal(
+        full, np.concatenate([np.arange(179, 250), np.arange(430, 600)])
+    )
+    without = np.flatnonzero(full_windows(features, ("steering_wheel_angle",)))
+    np.testing.assert_array_equal(without, np.arange(179, 600))
+
+
+def test_what_is_hidden_is_hidden_in_a_copy() -> None:
+    rows = np.ones((3, 2, 6))
+    hidden = hide(rows, ("head_yaw", "yaw_angle"))
+    assert np.isnan(hidden[..., [0, 5]]).all()
+    assert (hidden[..., 1:5] == 1.0).all()
+    assert (rows == 1.0).all()
+
+
+def test_no_variant_lacks_the_velocity_and_the_first_lacks_nothing() -> None:
+    assert all("longitudinal_velocity" not in absent for absent in VARIANTS.values())
+    assert next(iter(VARIANTS.values())) == ()

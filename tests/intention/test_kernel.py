@@ -74,19 +74,23 @@ def in_python(entry: Any) -> Any:
     return entry.py_func
 
 
+@pytest.mark.parametrize("absent", [(), ("head_yaw", "yaw_angle")])
 def test_the_bookkeeping_in_plain_python_gives_the_same_verdicts(
-    monkeypatch: pytest.MonkeyPatch,
+    absent: tuple[str, ...], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     packed = wavefront.wavefront_weights(random_weights(4, 1))
-    plain, compiled = (wavefront.initial_state(packed) for _ in range(2))
+    plain, compiled = (wavefront.initial_state(packed, absent) for _ in range(2))
     rows = np.random.default_rng(0).normal(size=(420, 6))
+    rows[150, 5] = np.inf
     rows[200, 4] = np.nan
+    rows[385:395, 0] = np.nan  # a lost head
     expected = [wavefront.advance(packed, compiled, IntentionSample(*r)) for r in rows]
     monkeypatch.setattr(wavefront, "advance_pair", pair_in_numpy)
     step = in_python(wavefront.advance)
     found = [step(packed, plain, IntentionSample(*row)) for row in rows]
     np.testing.assert_allclose(found, expected, rtol=0, atol=1e-6)
+    assert np.isfinite(found[200 + 180 :]).all()
     at_once = np.empty(len(rows))
-    state = wavefront.initial_state(packed)
+    state = wavefront.initial_state(packed, absent)
     in_python(wavefront._advance_over)(packed, state, rows, at_once)
     np.testing.assert_array_equal(at_once, found)

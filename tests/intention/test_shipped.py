@@ -12,7 +12,7 @@ import pytest
 from costeer.drivers.population import POPULATION_VERSION
 from costeer.intention.gru import hidden_size
 from costeer.intention.weights import load_weights, save_weights
-from costeer.training.dataset import simulate_recordings
+from costeer.training.simulation import simulate_recordings
 from costeer.training.evaluate import evaluate
 
 PAGE = Path(__file__).parents[2] / "docs" / "intention.md"

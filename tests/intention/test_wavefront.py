@@ -18,7 +18,7 @@ from costeer.intention.features import (
     facing,
     feature_series,
 )
-from costeer.intention.gru import NetworkWeights, crossing_probability, random_weights
+from costeer.intention.gru import crossing_probability
 from costeer.intention.wavefront import (
     WavefrontState,
     WavefrontWeights,
@@ -28,35 +28,9 @@ from costeer.intention.wavefront import (
     reset,
     wavefront_weights,
 )
+from tests.intention.lively import lively_weights, needy_weights, signals, windows
 
 SIZES = (3, 8, 16, 33, 64)
-
-
-def lively_weights(hidden: int, seed: int = 1) -> NetworkWeights:
-    """Weights whose gates open and close and that remember all of the window.
-
-    The bias keeps the update gates near 0.98, so the first of 180 samples still counts
-    0.98^180 = 3 % and a window one sample too long would show.
-    """
-    weights = random_weights(hidden, seed)
-    slow = np.array([0.0, 4.0, 0.0], np.float32)[:, None]
-    return weights._replace(
-        input_bias=weights.input_bias + slow,
-        hidden_weights=2.0 * weights.hidden_weights,
-        output_weights=4.0 * weights.output_weights,
-    )
-
-
-def signals(num_samples: int, seed: int = 0) -> NDArray[np.float64]:
-    """Smooth random signals of a few standard deviations."""
-    steps = np.random.default_rng(seed).normal(size=(num_samples, NUM_FEATURES))
-    return 3.0 * np.sin(0.05 * np.cumsum(steps, axis=0))
-
-
-def windows(features: NDArray[np.float64]) -> NDArray[np.float64]:
-    """All full windows, shape `(window, time, feature)`."""
-    views = np.lib.stride_tricks.sliding_window_view(features, WINDOW_LENGTH, axis=0)
-    return views.transpose(0, 2, 1)
 
 
 @pytest.mark.parametrize("hidden", SIZES)
@@ -89,7 +63,7 @@ def test_there_is_no_verdict_before_the_window_is_full() -> None:
 def test_an_invalid_sample_silences_exactly_the_windows_that_hold_it(
     broken: float, column: int
 ) -> None:
-    weights, features = lively_weights(8), signals(700)
+    weights, features = needy_weights(8), signals(700)
     features[300, column] = broken
     verdicts = crossing_probabilities(weights, features)
     silent = np.flatnonzero(np.isnan(verdicts[WINDOW_LENGTH - 1 :])) + WINDOW_LENGTH - 1

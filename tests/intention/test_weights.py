@@ -63,11 +63,15 @@ def altered(**changes: np.ndarray) -> NetworkWeights:
     ("weights", "words"),
     [
         (altered(input_weights=np.zeros((3, 8, 5))), "input_weights.*(3, 8, 5)"),
+        (altered(input_weights=np.zeros((3, 8, 6))), "expected (3, 8, 13)"),
         (altered(hidden_weights=np.zeros((3, 8, 9))), "hidden_weights.*(3, 8, 9)"),
         (altered(output_weights=np.zeros(0)), "shape"),
         (altered(output_bias=np.zeros(2)), "output_bias"),
         (altered(input_bias=np.full((3, 8), np.nan)), "not finite"),
-        (altered(feature_scale=np.zeros(6)), "positive"),
+        (altered(feature_mean=np.zeros(6)), "feature_mean.*(6,), expected (7,)"),
+        (altered(feature_scale=np.zeros(7)), "positive"),
+        (altered(dispensable=np.ones(7)), "dispensable.*(7,), expected (6,)"),
+        (altered(dispensable=np.full(6, np.nan)), "dispensable.*not finite"),
     ],
 )
 def test_weights_that_do_not_fit_are_refused(
@@ -135,7 +139,14 @@ def test_missing_arrays_are_named(tmp_path: Path) -> None:
         load_weights(file)
 
 
-@pytest.mark.parametrize("change", [('"version": 1', '"version": 9'), ("yaw", "jaw")])
+@pytest.mark.parametrize(
+    "change",
+    [
+        ('"version": 2', '"version": 9'),
+        ('"version": 2', '"version": 1'),
+        ("yaw", "jaw"),
+    ],
+)
 def test_another_version_or_other_signals_are_refused(
     tmp_path: Path, change: tuple[str, str]
 ) -> None:

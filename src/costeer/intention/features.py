@@ -14,11 +14,12 @@ windows.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from costeer.base import array as xp
 from costeer.base.array import Real, compiled
 
 WINDOW_LENGTH = 180
@@ -43,7 +44,7 @@ class IntentionSample(NamedTuple):
 
     Attributes:
         head_yaw: Normalised to [-1, 1], left positive; NaN if the head was not
-            tracked, which makes the verdict invalid [-].
+            tracked [-].
         longitudinal_acceleration: Along the car's axis [m/s²].
         longitudinal_velocity: Along the car's axis [m/s].
         steering_wheel_angle: Left positive [rad].
@@ -62,6 +63,39 @@ class IntentionSample(NamedTuple):
 
 FEATURES: tuple[str, ...] = IntentionSample._fields
 NUM_FEATURES = len(FEATURES)
+HEAD_YAW = FEATURES.index("head_yaw")
+"""Place of the one signal that is lost and found while a drive goes on."""
+DISTANCE = FEATURES.index("distance_to_adjacent_lane")
+
+VARIANTS: dict[str, tuple[str, ...]] = {
+    "full": (),
+    "no-head": ("head_yaw",),
+    "no-wheel": ("steering_wheel_angle",),
+    "motion": ("head_yaw", "steering_wheel_angle"),
+    "motion-without-place": (
+        "head_yaw",
+        "steering_wheel_angle",
+        "distance_to_adjacent_lane",
+    ),
+    "head": (
+        "longitudinal_acceleration",
+        "steering_wheel_angle",
+        "distance_to_adjacent_lane",
+        "yaw_angle",
+    ),
+}
+"""Sets of signals that a recording may lack, by the name of what is left."""
+
+SCALED = (*FEATURES, "approach_velocity")
+"""What is scaled before it enters the network."""
+
+INPUTS = (*SCALED, *(f"{name}_missing" for name in FEATURES))
+"""All inputs of the network."""
+
+NUM_SCALED = len(SCALED)
+NUM_INPUTS = len(INPUTS)
+_VELOCITY = FEATURES.index("longitudinal_velocity")
+_YAW = FEATURES.index("yaw_angle")
 _MIRRORED = ("head_yaw", "steering_wheel_angle", "yaw_angle")
 
 
@@ -103,6 +137,51 @@ def adjacent_side(lane: NDArray[np.int8]) -> NDArray[np.int8]:
     return side.astype(np.int8)
 
 
+def mirrored(features: NDArray[np.float64]) -> NDArray[np.float64]:
+    """The same drive in a mirror, shape `(*batch, feature)`.
+
+    The distance stays that to the line it was measured to.
+    """
+    turn = np.array([-1.0 if name in _MIRRORED else 1.0 for name in FEATURES])
+    return np.asarray(features * turn)
+
+
+def valid_samples(
+    features: NDArray[np.float64], absent: tuple[str, ...] = ()
+) -> NDArray[np.bool_]:
+    """Whether each sample may be used, shape `(time,)`.
+
+    A signal that the recording does not have may be anything. A head yaw that is NaN
+    is a head that was not tracked, and counts as missing at that sample. Every other
+    value that is not finite makes its sample invalid.
+
+    Args:
+        features: Shape `(time, feature)`.
+        absent: Signals that the recording does not have.
+    """
+    good = np.isfinite(features)
+    good[:, HEAD_YAW] |= np.isnan(features[:, HEAD_YAW])
+    good[:, [FEATURES.index(name) for name in absent]] = True
+    return np.asarray(good.all(axis=1))
+
+
+def hide(features: NDArray[np.float64], absent: tuple[str, ...]) -> NDArray[np.float64]:
+    """A copy with NaN for the absent signals, shape `(*batch, feature)`."""
+    hidden = np.array(features, np.float64)
+    hidden[..., [FEATURES.index(name) for name in absent]] = np.nan
+    return hidden
+
+
+def full_windows(
+    features: NDArray[np.float64], absent: tuple[str, ...] = ()
+) -> NDArray[np.bool_]:
+    """Whether a window of 180 valid samples ends at each sample, shape `(time,)`."""
+    valid = valid_samples(features, absent)
+    here = np.arange(len(valid))
+    last_bad = np.maximum.accumulate(np.where(valid, -1, here))
+    return np.asarray(here - last_bad >= WINDOW_LENGTH)
+
+
 def feature_series(
     columns: Mapping[str, NDArray[np.float64]], side: NDArray[np.int8]
 ) -> NDArray[np.float64]:
@@ -124,6 +203,25 @@ def feature_series(
     return np.stack(faced, axis=-1)
 
 
+@compiled
+def approach_velocity(longitudinal_velocity: Real, yaw_angle: Real) -> Real:
+    """Velocity towards the line to the adjacent lane on the right [m/s].
+
+    Args:
+        longitudinal_velocity: [m/s].
+        yaw_angle: Facing right [rad].
+    """
+    return -longitudinal_velocity * xp.sin(yaw_angle)
+
+
+def approach_series(features: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Velocity towards the line, `(*batch,)` [m/s], of `(*batch, feature)`."""
+    velocity: Any = features[..., _VELOCITY]  # Any: Real stands for arrays too
+    yaw: Any = features[..., _YAW]
+    with np.errstate(invalid="ignore"):
+        return np.asarray(approach_velocity(velocity, yaw))
+
+
 def scaled(
     features: NDArray[np.float64],
     mean: NDArray[np.float64],
@@ -140,3 +238,29 @@ def scaled(
         Within ±`FEATURE_LIMIT`, same shape; NaN stays NaN.
     """
     return np.clip((features - mean) / scale, -FEATURE_LIMIT, FEATURE_LIMIT)
+
+
+def network_inputs(
+    features: NDArray[np.float64],
+    mean: NDArray[np.float64],
+    scale: NDArray[np.float64],
+) -> NDArray[np.float64]:
+    """What enters the network: scaled signals, approach velocity, missing flags.
+
+    The approach velocity is a product of two signals of Eq. (1) and no new one: with it
+    the same motion in the lane looks alike at every speed. A missing signal is 0, its
+    mean, with its flag at 1.
+
+    Args:
+        features: Facing right, NaN where missing, shape `(*batch, feature)`.
+        mean: Of the signals and the approach velocity, shape `(7,)`.
+        scale: Their standard deviations, shape `(7,)`.
+
+    Returns:
+        Shape `(*batch, input)`, in the order of `INPUTS`.
+    """
+    approach = approach_series(features)
+    signals = np.concatenate([features, approach[..., None]], axis=-1)
+    values = np.nan_to_num(scaled(signals, mean, scale))
+    missing = np.isnan(features).astype(np.float64)
+    return np.concatenate([values, missing], axis=-1)

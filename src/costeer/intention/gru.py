@@ -10,6 +10,10 @@ Gate convention ("reset after", that of cuDNN, PyTorch, Keras' default and ONNX 
 
 from h = 0 at the window's first sample. The last hidden state feeds a sigmoid. Weights
 are stacked in the order reset, update, candidate.
+
+The input x holds the six signals of Eq. (1), scaled, their product (the velocity
+towards the line) and a flag for each signal that is missing (`features.INPUTS`). The
+paper's own network has the signals only: its other input weights are 0.
 """
 
 from __future__ import annotations
@@ -20,7 +24,16 @@ import numpy as np
 from jaxtyping import Float
 from numpy.typing import DTypeLike, NDArray
 
-from costeer.intention.features import NUM_FEATURES, scaled
+from costeer.intention.features import (
+    FEATURES,
+    HEAD_YAW,
+    NUM_FEATURES,
+    NUM_INPUTS,
+    NUM_SCALED,
+    hide,
+    network_inputs,
+    valid_samples,
+)
 
 Floats = NDArray[np.floating]
 
@@ -31,9 +44,12 @@ class NetworkWeights(NamedTuple):
     """All numbers of the network, with the scaling of its inputs.
 
     Attributes:
-        feature_mean: Of the training set, in the signals' units, `(feature,)`.
-        feature_scale: Standard deviations of the training set, `(feature,)`.
-        input_weights: W [-], `(gate, hidden, feature)`.
+        feature_mean: Of the training set, in the signals' units, with the approach
+            velocity at the end, `(7,)`.
+        feature_scale: Standard deviations of the training set, `(7,)`.
+        dispensable: 1 for each signal that the network was trained to do without,
+            else 0, `(feature,)`.
+        input_weights: W [-], `(gate, hidden, input)`.
         input_bias: b [-], `(gate, hidden)`.
         hidden_weights: U [-], `(gate, hidden, hidden)`.
         hidden_bias: c [-], `(gate, hidden)`.
@@ -43,6 +59,7 @@ class NetworkWeights(NamedTuple):
 
     feature_mean: NDArray[np.float64]
     feature_scale: NDArray[np.float64]
+    dispensable: NDArray[np.float64]
     input_weights: NDArray[np.float32]
     input_bias: NDArray[np.float32]
     hidden_weights: NDArray[np.float32]
@@ -65,9 +82,10 @@ def random_weights(hidden: int, seed: int) -> NetworkWeights:
         return rng.uniform(-bound, bound, shape).astype(np.float32)
 
     return NetworkWeights(
-        feature_mean=np.zeros(NUM_FEATURES),
-        feature_scale=np.ones(NUM_FEATURES),
-        input_weights=draw(3, hidden, NUM_FEATURES),
+        feature_mean=np.zeros(NUM_SCALED),
+        feature_scale=np.ones(NUM_SCALED),
+        dispensable=np.ones(NUM_FEATURES),
+        input_weights=draw(3, hidden, NUM_INPUTS),
         input_bias=draw(3, hidden),
         hidden_weights=draw(3, hidden, hidden),
         hidden_bias=draw(3, hidden),
@@ -85,14 +103,14 @@ def sigmoid(x: Floats | np.floating) -> Floats | np.floating:
 def gru_step(
     weights: NetworkWeights,
     state: Float[Floats, "*batch hidden"],
-    sample: Float[Floats, "*batch feature"],
+    sample: Float[Floats, "*batch input"],
 ) -> Float[Floats, "*batch hidden"]:
     """New hidden state after one sample.
 
     Args:
         weights: Of the precision in which to compute.
         state: Old hidden state, shape `(*batch, hidden)`.
-        sample: Scaled features, shape `(*batch, feature)`.
+        sample: Network inputs, shape `(*batch, input)`.
     """
     from_input = np.einsum("...f,ghf->g...h", sample, weights.input_weights)
     from_state = np.einsum("...k,ghk->g...h", state, weights.hidden_weights)
@@ -105,36 +123,74 @@ def gru_step(
     return new_state
 
 
+def without(dispensable: NDArray[np.generic], absent: tuple[str, ...]) -> None:
+    """Refuse to do without signals that a network needs.
+
+    Args:
+        dispensable: What it can do without, `(feature,)`.
+        absent: What is not there.
+
+    Raises:
+        ValueError: Naming them.
+    """
+    needed = [n for n in absent if not dispensable[FEATURES.index(n)]]
+    if needed:
+        raise ValueError(
+            f"this network was not trained to do without {', '.join(needed)}: give "
+            "the signal, or take a network that was"
+        )
+
+
+def usable(
+    weights: NetworkWeights, features: NDArray[np.float64], absent: tuple[str, ...]
+) -> NDArray[np.bool_]:
+    """Whether each sample of `features`, shape `(*batch, feature)`, may be used.
+
+    As `features.valid_samples`; a lost head only by a network trained for it.
+    """
+    flat = features.reshape(-1, NUM_FEATURES)
+    valid = valid_samples(flat, absent)
+    if not weights.dispensable[HEAD_YAW]:
+        valid &= np.isfinite(flat[:, HEAD_YAW])
+    return valid.reshape(features.shape[:-1])
+
+
 def crossing_probability(
     weights: NetworkWeights,
     feature_window: NDArray[np.float64],
     dtype: DTypeLike = np.float64,
+    absent: tuple[str, ...] = (),
 ) -> Float[Floats, "*batch"]:
     """Probability of a crossing to the adjacent side within the next 3 s, Eq. (2).
 
     Args:
         weights: The network.
-        feature_window: In the signals' units, facing right (features.py), shape
-            `(*batch, time, feature)`; Eq. (1) has 180 samples, oldest first.
+        feature_window: In the signals' units, facing right (features.py), NaN where
+            missing, shape `(*batch, time, feature)`; Eq. (1) has 180 samples, oldest
+            first.
         dtype: Precision of the computation, float64 or float32.
+        absent: Signals that are not there at all.
 
     Returns:
-        Shape `(*batch,)`; NaN where the window holds a value that is not finite.
+        Shape `(*batch,)`; NaN where the window holds a sample that cannot be used.
 
     Raises:
-        ValueError: If the last axis does not hold the six signals.
+        ValueError: If the last axis does not hold the six signals, or the network
+            cannot do without an absent one.
     """
     if feature_window.ndim < 2 or feature_window.shape[-1] != NUM_FEATURES:
         raise ValueError(
             f"feature_window has the shape {feature_window.shape}; it needs "
             f"(..., time, {NUM_FEATURES}), the signals of Eq. (1) last"
         )
-    inputs = scaled(feature_window, weights.feature_mean, weights.feature_scale)
+    without(weights.dispensable, absent)
+    known = hide(feature_window, absent)
+    inputs = network_inputs(known, weights.feature_mean, weights.feature_scale)
     inputs = inputs.astype(dtype)
     network = NetworkWeights(*(part.astype(dtype) for part in weights))
     state = np.zeros((*inputs.shape[:-2], hidden_size(weights)), dtype)
     for step in range(inputs.shape[-2]):
         state = gru_step(network, state, inputs[..., step, :])
     probability = sigmoid(state @ network.output_weights + network.output_bias[0])
-    valid = np.isfinite(feature_window).all(axis=(-2, -1))
+    valid = usable(weights, feature_window, absent).all(axis=-1)
     return np.where(valid, probability, np.asarray(np.nan, dtype))

@@ -22,15 +22,22 @@ from costeer.base.array import compiled
 from costeer.base.entry import entry
 from costeer.intention.features import (
     FEATURE_LIMIT,
+    FEATURES,
+    HEAD_YAW,
     NUM_FEATURES,
+    NUM_INPUTS,
+    NUM_SCALED,
     WINDOW_LENGTH,
     IntentionSample,
+    approach_velocity,
 )
-from costeer.intention.gru import NetworkWeights
+from costeer.intention.gru import NetworkWeights, without
 from costeer.intention.kernel import ROWS, TILE, advance_pair
 
-_NUM_TILES = -(-WINDOW_LENGTH // TILE)
 _CACHE_LINE = 64
+_VELOCITY = FEATURES.index("longitudinal_velocity")
+_YAW = FEATURES.index("yaw_angle")
+_APPROACH = NUM_FEATURES
 
 
 class WavefrontWeights(NamedTuple):
@@ -41,9 +48,10 @@ class WavefrontWeights(NamedTuple):
     (1 + tanh(a/2))/2, and halving is exact.
 
     Attributes:
-        feature_mean: `(feature,)`.
-        feature_scale: `(feature,)`.
-        input_weights: `(feature, row)`.
+        feature_mean: Of the scaled signals, `(7,)`.
+        feature_scale: `(7,)`.
+        dispensable: Signals that the network can do without, `(feature,)`.
+        input_weights: `(input, row)`.
         bias: Of input and, except for the candidate, of the state, `(row,)`.
         recurrent: `(pair, hidden, 6)`.
         candidate_bias: Inside the reset gate, `(hidden,)`.
@@ -53,6 +61,7 @@ class WavefrontWeights(NamedTuple):
 
     feature_mean: NDArray[np.float64]
     feature_scale: NDArray[np.float64]
+    dispensable: NDArray[np.bool_]
     input_weights: NDArray[np.float32]
     bias: NDArray[np.float32]
     recurrent: NDArray[np.float32]
@@ -68,14 +77,16 @@ class WavefrontState(NamedTuple):
         hidden: One hidden state per window start, `(tile, hidden, lane)`.
         new_hidden: Room for one tile's new states, `(hidden, lane)`.
         projection: Room for the input's part of each row, `(row,)`.
-        scaled: Room for the scaled sample, `(feature,)`.
+        inputs: Room for the network's inputs, `(input,)`.
+        absent: Signals that this drive does not have, `(feature,)`.
         counters: Lane of the next window start, valid samples in a row, `(2,)`.
     """
 
     hidden: NDArray[np.float32]
     new_hidden: NDArray[np.float32]
     projection: NDArray[np.float32]
-    scaled: NDArray[np.float32]
+    inputs: NDArray[np.float32]
+    absent: NDArray[np.bool_]
     counters: NDArray[np.int64]
 
 
@@ -107,7 +118,8 @@ def wavefront_weights(weights: NetworkWeights) -> WavefrontWeights:
     return WavefrontWeights(
         feature_mean=weights.feature_mean.astype(np.float64),
         feature_scale=weights.feature_scale.astype(np.float64),
-        input_weights=_aligned(inputs.transpose(2, 1, 0).reshape(NUM_FEATURES, -1)),
+        dispensable=weights.dispensable > 0.5,
+        input_weights=_aligned(inputs.transpose(2, 1, 0).reshape(NUM_INPUTS, -1)),
         bias=_aligned(bias.T.ravel()),
         recurrent=_aligned(by_pair.transpose(0, 2, 1)),
         candidate_bias=_aligned(hidden_bias[2]),
@@ -116,14 +128,32 @@ def wavefront_weights(weights: NetworkWeights) -> WavefrontWeights:
     )
 
 
-def initial_state(weights: WavefrontWeights) -> WavefrontState:
-    """Memory before the first sample; one per driver, never shared by threads."""
+def initial_state(
+    weights: WavefrontWeights,
+    absent: tuple[str, ...] = (),
+    num_lanes: int = WINDOW_LENGTH,
+) -> WavefrontState:
+    """Memory before the first sample; one per driver, never shared by threads.
+
+    Args:
+        weights: Of the network that will run.
+        absent: Signals that this drive does not have; what is given for them is not
+            looked at.
+        num_lanes: Window starts to hold: 180 for `advance`.
+
+    Raises:
+        ValueError: If the network was not trained to do without one of them.
+    """
     hidden = weights.candidate_bias.shape[0]
+    num_tiles = -(-num_lanes // TILE)
+    missing = np.array([name in absent for name in FEATURES])
+    without(weights.dispensable, absent)
     return WavefrontState(
-        hidden=_aligned(np.zeros((_NUM_TILES, hidden, TILE), np.float32)),
+        hidden=_aligned(np.zeros((num_tiles, hidden, TILE), np.float32)),
         new_hidden=_aligned(np.zeros((hidden, TILE), np.float32)),
         projection=_aligned(np.zeros(3 * hidden, np.float32)),
-        scaled=np.zeros(NUM_FEATURES, np.float32),
+        inputs=np.zeros(NUM_INPUTS, np.float32),
+        absent=missing,
         counters=np.zeros(2, np.int64),
     )
 
@@ -135,28 +165,68 @@ def reset(state: WavefrontState) -> None:
 
 
 @compiled
-def _take(
-    weights: WavefrontWeights, state: WavefrontState, index: int, value: float
-) -> bool:
-    """Scale one signal as features.py does; whether it was finite."""
-    deviation = (value - weights.feature_mean[index]) / weights.feature_scale[index]
+def _deviations(value: float, mean: float, scale: float) -> float:
+    """Scale one value as features.py does; NaN is 0, its mean."""
+    deviation = (value - mean) / scale
     held = min(max(deviation, -FEATURE_LIMIT), FEATURE_LIMIT)
-    state.scaled[index] = held
-    return math.isfinite(value)
+    return held if held == held else 0.0
 
 
 @compiled
-def _project(weights: WavefrontWeights, state: WavefrontState) -> None:
-    """The input's part of every row: once per sample, the same for all starts."""
-    state.projection[:] = weights.bias
-    for feature in range(NUM_FEATURES):
-        value = state.scaled[feature]
-        for row in range(state.projection.shape[0]):
-            state.projection[row] += weights.input_weights[feature, row] * value
+def _usable(value: float, absent: bool, may_be_lost: bool) -> bool:
+    """Whether a signal may enter: absent, finite, or lost where that is borne."""
+    return absent or math.isfinite(value) or (may_be_lost and math.isnan(value))
 
 
 @compiled
-def _advance_states(weights: WavefrontWeights, state: WavefrontState) -> None:
+def take(
+    weights: WavefrontWeights, state: WavefrontState, sample: IntentionSample
+) -> bool:
+    """Put signals, flags and approach velocity among the inputs; whether all may enter.
+
+    The helpers take numbers, because compiled code counts references to each array of
+    a tuple that it hands on: 0.1 us a call.
+    """
+    signals = (
+        float(sample.head_yaw),
+        float(sample.longitudinal_acceleration),
+        float(sample.longitudinal_velocity),
+        float(sample.steering_wheel_angle),
+        float(sample.distance_to_adjacent_lane),
+        float(sample.yaw_angle),
+    )
+    mean, scale, absent = weights.feature_mean, weights.feature_scale, state.absent
+    valid = True
+    for index in range(NUM_FEATURES):
+        value = signals[index]
+        missing = absent[index] or math.isnan(value)
+        known = math.nan if missing else value
+        state.inputs[index] = _deviations(known, mean[index], scale[index])
+        state.inputs[NUM_SCALED + index] = 1.0 if missing else 0.0
+        may_be_lost = index == HEAD_YAW and weights.dispensable[index]
+        valid &= _usable(value, absent[index], may_be_lost)
+    there = not (absent[_VELOCITY] or absent[_YAW])
+    velocity, yaw = signals[_VELOCITY], signals[_YAW]
+    approach = approach_velocity(velocity, yaw) if there else math.nan
+    state.inputs[_APPROACH] = _deviations(approach, mean[_APPROACH], scale[_APPROACH])
+    return valid
+
+
+@compiled
+def project(weights: WavefrontWeights, state: WavefrontState) -> None:
+    """The input's part of every row: once per sample, the same for all starts.
+
+    All inputs of a row at once: a loop over rows inside one over inputs is slower.
+    """
+    for row in range(state.projection.shape[0]):
+        total = weights.bias[row]
+        for index in range(NUM_INPUTS):
+            total += weights.input_weights[index, row] * state.inputs[index]
+        state.projection[row] = total
+
+
+@compiled
+def advance_states(weights: WavefrontWeights, state: WavefrontState) -> None:
     """One GRU step of all window starts."""
     for tile in range(state.hidden.shape[0]):
         hidden = state.hidden[tile]
@@ -173,7 +243,7 @@ def _advance_states(weights: WavefrontWeights, state: WavefrontState) -> None:
 
 
 @compiled
-def _verdict(weights: WavefrontWeights, state: WavefrontState, lane: int) -> float:
+def verdict(weights: WavefrontWeights, state: WavefrontState, lane: int) -> float:
     """Sigmoid of the hidden state in one lane."""
     tile, column = lane // TILE, lane % TILE
     logit = float(weights.output_bias[0])
@@ -184,17 +254,17 @@ def _verdict(weights: WavefrontWeights, state: WavefrontState, lane: int) -> flo
 
 @compiled
 def _advance_scaled(weights: WavefrontWeights, state: WavefrontState) -> float:
-    """Open a window at the sample in `state.scaled`, advance all, close the oldest."""
+    """Open a window at the sample in `state.inputs`, advance all, close the oldest."""
     lane = state.counters[0]
     state.hidden[lane // TILE, :, lane % TILE] = 0.0
-    _project(weights, state)
-    _advance_states(weights, state)
+    project(weights, state)
+    advance_states(weights, state)
     oldest = (lane + 1) % WINDOW_LENGTH
     state.counters[0] = oldest
     state.counters[1] += 1
     if state.counters[1] < WINDOW_LENGTH:
         return math.nan
-    return _verdict(weights, state, oldest)
+    return verdict(weights, state, oldest)
 
 
 @entry
@@ -211,15 +281,11 @@ def advance(
         sample: Facing right (`features.facing`).
 
     Returns:
-        In [0, 1]; NaN until the window holds 180 samples in a row that are all finite.
+        In [0, 1]; NaN until the window holds 180 usable samples in a row: finite, but
+        for signals that are absent and a head that is lost, if the network was trained
+        for it.
     """
-    valid = _take(weights, state, 0, sample.head_yaw)
-    valid &= _take(weights, state, 1, sample.longitudinal_acceleration)
-    valid &= _take(weights, state, 2, sample.longitudinal_velocity)
-    valid &= _take(weights, state, 3, sample.steering_wheel_angle)
-    valid &= _take(weights, state, 4, sample.distance_to_adjacent_lane)
-    valid &= _take(weights, state, 5, sample.yaw_angle)
-    if not valid:
+    if not take(weights, state, sample):
         state.counters[1] = 0
         return math.nan
     return _advance_scaled(weights, state)
@@ -233,10 +299,9 @@ def _advance_over(
     probabilities: NDArray[np.float64],
 ) -> None:
     for step in range(features.shape[0]):
-        valid = True
-        for index in range(NUM_FEATURES):
-            valid &= _take(weights, state, index, features[step, index])
-        if valid:
+        row = features[step]
+        sample = IntentionSample(row[0], row[1], row[2], row[3], row[4], row[5])
+        if take(weights, state, sample):
             probabilities[step] = _advance_scaled(weights, state)
         else:
             state.counters[1] = 0
@@ -244,19 +309,24 @@ def _advance_over(
 
 
 def crossing_probabilities(
-    weights: NetworkWeights, features: NDArray[np.float64]
+    weights: NetworkWeights,
+    features: NDArray[np.float64],
+    absent: tuple[str, ...] = (),
 ) -> NDArray[np.float64]:
     """Verdict at every sample of one recording.
 
     Args:
         weights: The network.
-        features: In the signals' units, facing right, shape `(time, feature)`.
+        features: In the signals' units, facing right, NaN where missing, shape
+            `(time, feature)`.
+        absent: Signals that the recording does not have.
 
     Returns:
         As `advance` gives them, shape `(time,)`.
 
     Raises:
-        ValueError: If the last axis does not hold the six signals.
+        ValueError: If the last axis does not hold the six signals, or the network
+            cannot do without an absent one.
     """
     if features.ndim != 2 or features.shape[1] != NUM_FEATURES:
         raise ValueError(
@@ -266,5 +336,5 @@ def crossing_probabilities(
     packed = wavefront_weights(weights)
     probabilities = np.empty(features.shape[0])
     series = np.ascontiguousarray(features, np.float64)
-    _advance_over(packed, initial_state(packed), series, probabilities)
+    _advance_over(packed, initial_state(packed, absent), series, probabilities)
     return probabilities

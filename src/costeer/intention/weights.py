@@ -19,11 +19,18 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from costeer.intention.features import FEATURES, NUM_FEATURES, WINDOW_LENGTH
+from costeer.intention.features import (
+    FEATURES,
+    INPUTS,
+    NUM_FEATURES,
+    NUM_INPUTS,
+    NUM_SCALED,
+    WINDOW_LENGTH,
+)
 from costeer.intention.gru import NetworkWeights
 
-FORMAT_VERSION = 1
-_DOUBLE = ("feature_mean", "feature_scale")
+FORMAT_VERSION = 2
+_DOUBLE = ("feature_mean", "feature_scale", "dispensable")
 _SHIPPED = "ibhs.npz"
 
 
@@ -68,6 +75,7 @@ def save_weights(path: Path, network: IntentionNetwork) -> None:
     header = {
         "version": FORMAT_VERSION,
         "features": list(FEATURES),
+        "inputs": list(INPUTS),
         "window_length": WINDOW_LENGTH,
         "hash": network.hash,
         "facts": network.facts,
@@ -155,9 +163,10 @@ def _check(weights: NetworkWeights, source: str) -> None:
     """Refuse shapes that do not fit together and values that are not finite."""
     hidden = weights.output_weights.size
     wanted = {
-        "feature_mean": (NUM_FEATURES,),
-        "feature_scale": (NUM_FEATURES,),
-        "input_weights": (3, hidden, NUM_FEATURES),
+        "feature_mean": (NUM_SCALED,),
+        "feature_scale": (NUM_SCALED,),
+        "dispensable": (NUM_FEATURES,),
+        "input_weights": (3, hidden, NUM_INPUTS),
         "input_bias": (3, hidden),
         "hidden_weights": (3, hidden, hidden),
         "hidden_bias": (3, hidden),
