@@ -67,7 +67,7 @@ def test_measures_statistics_and_figures_read_records_only() -> None:
     assert not loop
 
 
-def test_only_the_data_set_of_training_simulates() -> None:
-    others = [f for f in files(PACKAGE / "training") if f.stem != "dataset"]
+def test_one_file_of_training_simulates() -> None:
+    others = [f for f in files(PACKAGE / "training") if f.stem != "simulation"]
     names = {name for file in others for name in imported(file)}
     assert not {name for name in names if name.startswith("costeer.loop.trial")}

@@ -50,15 +50,27 @@ def test_bins_are_fine_enough() -> None:
     rng = np.random.default_rng(1)
     truth = rng.random(20_000) < 0.1
     said = 1.0 / (1.0 + np.exp(-(rng.normal(size=20_000) + 3.0 * truth - 2.0)))
+    edges = metrics.bin_edges(said, truth)
     for area in (metrics.pr_auc, metrics.roc_auc):
         exact = area(*metrics.level_counts(said, truth))
-        binned = area(*metrics.binned_counts(said, truth))
-        # 2000 bins over 30 logits: a bin holds about 0.6 % of the samples at most.
-        assert binned == pytest.approx(exact, abs=2e-3)
+        binned = area(*metrics.binned_counts(said, truth, edges))
+        # A bin holds at most 0.1 % of each class.
+        assert binned == pytest.approx(exact, abs=1e-3)
+
+
+def test_bins_follow_a_monotone_change_of_the_score() -> None:
+    said, truth = drawn()
+    changed = 1.0 - 1e-9 * (1.0 - said) ** 3
+    counts = [
+        metrics.binned_counts(one, truth, metrics.bin_edges(one, truth))
+        for one in (said, changed)
+    ]
+    np.testing.assert_array_equal(counts[0], counts[1])
 
 
 def test_a_batch_gives_what_its_members_give() -> None:
-    sets = [metrics.binned_counts(*drawn(seed)) for seed in range(3)]
+    edges = metrics.bin_edges(*drawn())
+    sets = [metrics.binned_counts(*drawn(seed), edges) for seed in range(3)]
     positives, negatives = (np.array(part) for part in zip(*sets, strict=True))
     for area in (metrics.pr_auc, metrics.roc_auc):
         together = area(positives, negatives)
@@ -111,3 +123,43 @@ def test_calibration_of_honest_probabilities_is_near_the_diagonal() -> None:
     assert metrics.calibration_error(bins) < 0.01
     off = metrics.calibration(said, rng.random(100_000) < said**2)
     assert metrics.calibration_error(off) > 0.1
+
+
+def test_balanced_counts_weigh_each_class_by_half() -> None:
+    counts = metrics.Confusion(*(np.array(n) for n in (8.0, 10.0, 2.0, 90.0)))
+    found = metrics.scores(metrics.balanced(counts))
+    assert found["prevalence"] == pytest.approx(0.5)
+    assert found["accuracy"] == pytest.approx((0.8 + 0.9) / 2.0)
+    assert found["precision"] == pytest.approx(0.8 / 0.9)
+    assert found["f1"] == pytest.approx(2.0 * 0.8 / (2.0 * 0.8 + 0.1 + 0.2))
+
+
+def test_balanced_levels_give_what_repeated_positives_give() -> None:
+    said, truth = drawn()
+    rare, times = said[truth], (~truth).sum()
+    repeated = np.concatenate(
+        [np.repeat(rare, times), np.repeat(said[~truth], len(rare))]
+    )
+    kinds = np.arange(len(repeated)) < len(rare) * times
+    levels = metrics.balanced_levels(*metrics.level_counts(said, truth))
+    expected = metrics.pr_auc(*metrics.level_counts(repeated, kinds))
+    assert metrics.pr_auc(*levels) == pytest.approx(expected, abs=1e-12)
+
+
+def test_even_odds_divide_by_the_prevalence() -> None:
+    said = np.array([0.0, 0.1, 0.5, 1.0])
+    turned = metrics.with_even_odds(said, 0.1)
+    assert turned == pytest.approx([0.0, 0.5, 0.9, 1.0])
+    assert metrics.with_even_odds(said, 0.5) == pytest.approx(said)
+
+
+def test_curves_end_at_all_positives() -> None:
+    said, truth = drawn()
+    levels = metrics.level_counts(said, truth)
+    recall, precision = metrics.pr_curve(*levels)
+    assert recall[-1] == 1.0
+    assert precision[-1] == pytest.approx(truth.mean())
+    false, true = metrics.roc_curve(*levels)
+    assert (false[-1], true[-1]) == (1.0, 1.0)
+    area = np.trapezoid(np.append(0.0, true), np.append(0.0, false))
+    assert area == pytest.approx(metrics.roc_auc(*levels), abs=1e-12)

@@ -28,7 +28,15 @@ def stretch(crossing_row: int | None = 1200, side: int = -1) -> Recording:
     sides = np.full(LENGTH, -1, np.int8)
     features = np.zeros((LENGTH, 6))
     features[:, 2] = 20.0
-    return Recording("a", "a", features, sides, intended, labels(intended, sides))
+    return Recording(
+        driver="a",
+        name="a",
+        features=features,
+        side=sides,
+        crossing=intended,
+        intended=intended,
+        labels=labels(intended, sides),
+    )
 
 
 def verdicts(*spans: tuple[int, int]) -> NDArray[np.float64]:

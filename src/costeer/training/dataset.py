@@ -6,36 +6,34 @@ towards the line, the seconds around a lane change) and at every eighteenth else
 the latter count threefold in the loss. So the loss estimates that of natural driving,
 probabilities stay calibrated at natural prevalence, and the batches hold more of what
 is hard. No sample is repeated to balance the classes.
+
+A recording of two lanes is shown thrice: as it is, and as the runs to the right and to
+the left on a road with more lanes (`recordings.wide_views`).
 """
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import ThreadPoolExecutor
+from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from costeer.intention.features import (
-    FEATURES,
-    NUM_FEATURES,
+    DISTANCE,
+    HEAD_YAW,
     WINDOW_LENGTH,
-    scaled,
+    full_windows,
+    hide,
+    network_inputs,
 )
-from costeer.loop.scenario import TrialSetup
-from costeer.loop.trial import simulate_trial
-from costeer.training.recordings import Recording, recordings_of
-
-FIRST_PARTICIPANT = 100_001
-"""Number of the first simulated driver; those of studies count from 1."""
-
-SPEEDS_KMH = (70.0, 60.0, 80.0, 70.0, 90.0, 50.0, 70.0, 100.0)
-"""Suggested speeds that simulated drivers take in turn [km/h]; studies drive 70."""
-
-_HEAD = FEATURES.index("head_yaw")
-_DISTANCE = FEATURES.index("distance_to_adjacent_lane")
+from costeer.training.augmentation import (
+    ALL_SIGNALS,
+    AugmentationParameters,
+    augmented,
+)
+from costeer.training.recordings import Recording, wide_views
+from costeer.training.scaling import Scaling
 
 
 class DatasetParameters(NamedTuple):
@@ -78,8 +76,8 @@ class Windows(NamedTuple):
     """Windows to train on.
 
     Attributes:
-        features: Scaled signals of all recordings, one after another,
-            `(time, feature)`.
+        features: Signals of all recordings in their units, NaN where missing, one
+            recording after another, `(time, feature)`.
         ends: Row of each window's last sample, `(window,)`.
         positive: 1 where the car crosses within the horizon, else 0, `(window,)`.
         weight: In the loss [-], `(window,)`.
@@ -89,42 +87,6 @@ class Windows(NamedTuple):
     ends: NDArray[np.int64]
     positive: NDArray[np.float32]
     weight: NDArray[np.float32]
-
-
-def simulate_recordings(
-    num_drivers: int,
-    seed: int,
-    jobs: int = 1,
-    progress: Callable[[int], None] | None = None,
-) -> list[Recording]:
-    """Manual trials of virtual drivers, one each, with other drivers than any study.
-
-    Args:
-        num_drivers: How many.
-        seed: Of the population and of all noise.
-        jobs: Threads.
-        progress: Told after each trial.
-    """
-    speeds = len(SPEEDS_KMH)
-    setups = [
-        TrialSetup(
-            participant=FIRST_PARTICIPANT + i,
-            seed=seed,
-            condition="manual",
-            method="manual",
-            change_duration=math.nan,
-            speed=SPEEDS_KMH[i % speeds] / 3.6,
-            intention="off",
-        )
-        for i in range(num_drivers)
-    ]
-    found: list[Recording] = []
-    with ThreadPoolExecutor(jobs) as pool:
-        for setup, record in zip(setups, pool.map(simulate_trial, setups), strict=True):
-            found += recordings_of(record, f"simulated driver {setup.participant}")
-            if progress:
-                progress(1)
-    return found
 
 
 def split_by_driver(
@@ -159,36 +121,6 @@ def split_by_driver(
     )
 
 
-def scaling(
-    recordings: Sequence[Recording],
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Mean and standard deviation of each signal over all valid samples.
-
-    Raises:
-        ValueError: If a signal never changes or is never valid.
-    """
-    rows = np.concatenate([r.features for r in recordings])
-    rows = rows[np.isfinite(rows).all(axis=1)]
-    if len(rows) == 0:
-        raise ValueError("no sample of the recordings has all six signals")
-    mean, scale = rows.mean(axis=0), rows.std(axis=0)
-    for name, deviation in zip(FEATURES, scale, strict=True):
-        if not deviation > 0.0:
-            raise ValueError(
-                f"{name} never changes in the training recordings; a network needs "
-                "signals that do"
-            )
-    return mean, scale
-
-
-def full_windows(features: NDArray[np.float64]) -> NDArray[np.bool_]:
-    """Whether a window of 180 valid samples ends at each sample, shape `(time,)`."""
-    valid = np.asarray(np.isfinite(features).all(axis=1))
-    bad = np.where(valid, -1, np.arange(len(valid)))
-    since = np.arange(len(valid)) - np.maximum.accumulate(bad)
-    return np.asarray(since >= WINDOW_LENGTH)
-
-
 def interesting(
     recording: Recording, parameters: DatasetParameters
 ) -> NDArray[np.bool_]:
@@ -200,17 +132,18 @@ def interesting(
     following = np.searchsorted(edges, here, side="right")
     near = np.minimum(here - edges[following - 1], edges[following] - here) <= reach
     with np.errstate(invalid="ignore"):
-        glances = recording.features[:, _HEAD] < -parameters.glance
-        drifts = recording.features[:, _DISTANCE] < parameters.near_line
+        glances = recording.features[:, HEAD_YAW] < -parameters.glance
+        drifts = recording.features[:, DISTANCE] < parameters.near_line
     return np.asarray(near | glances | drifts | recording.labels.positive)
 
 
-def windows(
-    recordings: Sequence[Recording],
-    mean: NDArray[np.float64],
-    scale: NDArray[np.float64],
-    parameters: DatasetParameters,
-) -> Windows:
+def shown(recordings: Sequence[Recording]) -> list[Recording]:
+    """Recordings as they are and, where they have all signals, on a wider road."""
+    wider = [v for r in recordings if not r.absent for v in wide_views(r)]
+    return [*recordings, *wider]
+
+
+def windows(recordings: Sequence[Recording], parameters: DatasetParameters) -> Windows:
     """Windows that end where the strides say.
 
     Raises:
@@ -223,15 +156,15 @@ def windows(
         positive.append(one.labels.positive[chosen])
         weight.append(weights)
         offset += len(one.features)
-    rows = np.concatenate([r.features for r in recordings])
     truth = np.concatenate(positive).astype(np.float32)
     if not 0 < truth.sum() < len(truth):
         raise ValueError(
             f"{len(truth)} training windows hold {int(truth.sum())} that precede a "
             "crossing; both kinds are needed"
         )
+    rows = np.concatenate([hide(r.features, r.absent) for r in recordings])
     return Windows(
-        features=np.nan_to_num(scaled(rows, mean, scale)).astype(np.float32),
+        features=rows.astype(np.float32),
         ends=np.concatenate(ends),
         positive=truth,
         weight=np.concatenate(weight).astype(np.float32),
@@ -242,7 +175,8 @@ def _chosen(
     recording: Recording, parameters: DatasetParameters
 ) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
     """Rows at which windows end, and their weights."""
-    usable = full_windows(recording.features) & recording.labels.known
+    full = full_windows(recording.features, recording.absent)
+    usable = full & recording.labels.known
     hard = interesting(recording, parameters)
     here = np.arange(len(usable))
     close = here % parameters.stride == 0
@@ -251,13 +185,35 @@ def _chosen(
     return rows, np.where(hard[rows], 1.0, float(parameters.easy_factor))
 
 
+class Batch(NamedTuple):
+    """Windows of one training step.
+
+    Attributes:
+        inputs: Of the network, `(window, time, input)`.
+        positive: Truth, `(window,)`.
+        weight: In the loss [-], `(window,)`.
+    """
+
+    inputs: NDArray[np.float32]
+    positive: NDArray[np.float32]
+    weight: NDArray[np.float32]
+
+
 def batches(
-    data: Windows, size: int, seed: int
-) -> Iterator[tuple[NDArray[np.float32], NDArray[np.float32], NDArray[np.float32]]]:
+    data: Windows,
+    scale: Scaling,
+    size: int,
+    seed: int,
+    augmentation: AugmentationParameters = ALL_SIGNALS,
+) -> Iterator[Batch]:
     """Batches without end; each window comes once per pass, in a new order.
 
-    Yields:
-        Features `(batch, time, feature)`, truth and weight `(batch,)`.
+    Args:
+        data: Windows of all recordings.
+        scale: Of the signals.
+        size: Windows in a batch.
+        seed: Of the order and of the variants.
+        augmentation: In which variants windows are shown.
     """
     rng = np.random.default_rng([seed, 2])
     back = np.arange(1 - WINDOW_LENGTH, 1)
@@ -267,5 +223,10 @@ def batches(
         for start in range(0, len(order) - size + 1, size):
             chosen = order[start : start + size]
             rows = data.ends[chosen][:, None] + back
-            batch = data.features[rows].reshape(size, WINDOW_LENGTH, NUM_FEATURES)
-            yield batch, data.positive[chosen], data.weight[chosen]
+            seen = augmented(augmentation, data.features[rows], rng)
+            inputs = network_inputs(seen, scale.mean, scale.scale)
+            yield Batch(
+                inputs=inputs.astype(np.float32),
+                positive=data.positive[chosen],
+                weight=data.weight[chosen],
+            )

@@ -1,24 +1,27 @@
-"""Judge a network on recordings: samples, triggers, drivers, uncertainty.
+"""Judge a predictor on recordings: samples, triggers, drivers, uncertainty.
 
-Judged are all samples with a verdict and a known answer, at natural prevalence.
-Intervals are 95 % percentiles of a bootstrap that resamples drivers, because samples
-of one driver are not independent.
+Judged are all samples with a verdict and a known answer, at natural prevalence, and
+beside it as if half of them were positive. Intervals are 95 % percentiles of a
+bootstrap that resamples drivers, because samples of one driver are not independent.
 """
 
 from __future__ import annotations
 
 import math
-import os
 from collections.abc import Sequence
-from concurrent.futures import ThreadPoolExecutor
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from costeer.intention.gru import NetworkWeights
-from costeer.intention.wavefront import crossing_probabilities
-from costeer.training import metrics
+from costeer.intention.predictors.interface import Probabilities
+from costeer.training import bootstrap, metrics
+from costeer.training.operating import (
+    OperatingCounts,
+    best_place,
+    counts_at,
+    operating_counts,
+)
 from costeer.training.recordings import Recording
 from costeer.training.triggers import (
     TriggerCounts,
@@ -27,6 +30,23 @@ from costeer.training.triggers import (
     total,
     trigger_scores,
 )
+from costeer.training.verdicts import DriverVerdicts, judged_samples, verdicts
+
+__all__ = [
+    "DEFAULTS",
+    "DriverVerdicts",
+    "EvaluationParameters",
+    "Judgement",
+    "at_false_rate",
+    "balanced_scores",
+    "evaluate",
+    "judged_samples",
+    "judgement",
+    "plain",
+    "sample_scores",
+    "trigger_counts",
+    "verdicts",
+]
 
 
 class EvaluationParameters(NamedTuple):
@@ -50,53 +70,20 @@ class EvaluationParameters(NamedTuple):
 DEFAULTS = EvaluationParameters()
 
 
-class DriverVerdicts(NamedTuple):
-    """Everything that is judged of one driver.
+class Judgement(NamedTuple):
+    """A judgement, and what comparisons and figures need of it.
 
     Attributes:
-        driver: Who.
-        recordings: His or her stretches.
-        probabilities: Verdicts of each stretch, NaN where none, `(time,)` each.
+        facts: Plain numbers, lists and dictionaries, NaN as None.
+        drivers: What was judged.
+        operating: Triggers at all thresholds.
+        drawn: Scores in each resampling of the drivers.
     """
 
-    driver: str
-    recordings: list[Recording]
-    probabilities: list[NDArray[np.float64]]
-
-
-def verdicts(
-    weights: NetworkWeights, recordings: Sequence[Recording]
-) -> list[DriverVerdicts]:
-    """Run the exact window over all recordings, by driver in order of name."""
-    with ThreadPoolExecutor(os.cpu_count()) as pool:
-        run = pool.map(
-            lambda r: crossing_probabilities(weights, r.features), recordings
-        )
-        pairs = list(zip(recordings, run, strict=True))
-    names = sorted({r.driver for r in recordings})
-    return [
-        DriverVerdicts(
-            driver=name,
-            recordings=[r for r, _ in pairs if r.driver == name],
-            probabilities=[p for r, p in pairs if r.driver == name],
-        )
-        for name in names
-    ]
-
-
-def judged_samples(
-    drivers: Sequence[DriverVerdicts],
-) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
-    """Probability and truth wherever both are known, all drivers in one row."""
-    said, truth = [], []
-    for one in drivers:
-        for recording, probability in zip(
-            one.recordings, one.probabilities, strict=True
-        ):
-            rows = np.isfinite(probability) & recording.labels.known
-            said.append(probability[rows])
-            truth.append(recording.labels.positive[rows])
-    return np.concatenate(said), np.concatenate(truth)
+    facts: dict[str, Any]  # Any: JSON
+    drivers: list[DriverVerdicts]
+    operating: OperatingCounts
+    drawn: bootstrap.Drawn
 
 
 def sample_scores(
@@ -116,6 +103,27 @@ def sample_scores(
     }
 
 
+def balanced_scores(
+    probability: NDArray[np.float64], positive: NDArray[np.bool_], threshold: float
+) -> dict[str, float]:
+    """Scores over samples if half of them were positive: each class weighs as much.
+
+    Accuracy, precision and F1 are those of the same answers. `accuracy_even_odds` is
+    that of the probabilities as Bayes' rule turns them for even odds, at 0.5; a network
+    that is fitted on as many positives as negatives says these.
+    """
+    levels = metrics.level_counts(probability, positive)
+    counts = metrics.confusion(probability, positive, threshold)
+    found = metrics.scores(metrics.balanced(counts))
+    names = ("prevalence", "accuracy", "precision", "recall", "f1")
+    even = metrics.with_even_odds(probability, float(positive.mean()))
+    turned = metrics.scores(metrics.confusion(even, positive, 0.5))
+    return {name: float(found[name]) for name in names} | {
+        "pr_auc": float(metrics.pr_auc(*metrics.balanced_levels(*levels))),
+        "accuracy_even_odds": float(turned["balanced_accuracy"]),
+    }
+
+
 def trigger_counts(
     driver: DriverVerdicts, parameters: TriggerParameters
 ) -> TriggerCounts:
@@ -127,33 +135,48 @@ def trigger_counts(
 def at_false_rate(
     drivers: Sequence[DriverVerdicts], parameters: EvaluationParameters
 ) -> dict[str, float]:
-    """Trigger scores at the lowest threshold that keeps to the false-trigger rate.
+    """Trigger scores at the threshold with the largest median lead at a false rate.
 
-    Empty if no threshold up to 0.999 does.
+    All thresholds of a fine grid are looked at, because false triggers per kilometre
+    are not monotone in the threshold; of those that keep to the rate the one with the
+    largest median lead is taken (operating.py).
+
+    Empty if none does.
     """
-    found: dict[str, float] = {}
-    for logit in np.arange(7.0, -7.0, -0.25):
-        threshold = float(1.0 / (1.0 + np.exp(-logit)))
-        triggers = parameters.triggers._replace(threshold=threshold)
-        counts = [trigger_counts(one, triggers) for one in drivers]
-        score = trigger_scores(total(counts))
-        if not score["false_per_km"] <= parameters.false_per_km:
-            break
-        found = {"threshold": threshold, **score}
-    return found
+    return _at_rate(operating_counts(drivers, parameters.triggers), parameters)
+
+
+def _at_rate(
+    counts: OperatingCounts, parameters: EvaluationParameters
+) -> dict[str, float]:
+    place = best_place(counts, parameters.false_per_km)
+    if place is None:
+        return {}
+    score = trigger_scores(counts_at(counts, place))
+    return {"threshold": float(counts.thresholds[place]), **score}
 
 
 def evaluate(
-    weights: NetworkWeights,
+    predict: Probabilities,
     recordings: Sequence[Recording],
     parameters: EvaluationParameters = DEFAULTS,
 ) -> dict[str, Any]:
-    """Judge the network; the result is plain numbers, lists and dictionaries.
+    """Judge a predictor; the result is plain numbers, lists and dictionaries.
 
     Raises:
         ValueError: If no sample can be judged.
     """
-    drivers = verdicts(weights, recordings)
+    return judgement(parameters, verdicts(predict, recordings)).facts
+
+
+def judgement(
+    parameters: EvaluationParameters, drivers: list[DriverVerdicts]
+) -> Judgement:
+    """Judge what a predictor said.
+
+    Raises:
+        ValueError: If no sample can be judged.
+    """
     probability, positive = judged_samples(drivers)
     if len(probability) == 0:
         raise ValueError(
@@ -161,23 +184,48 @@ def evaluate(
             "answer 3 s of driving after it"
         )
     counts = [trigger_counts(one, parameters.triggers) for one in drivers]
-    threshold = parameters.triggers.threshold
-    result = {
+    operating = operating_counts(drivers, parameters.triggers)
+    drawn = _drawn(parameters, drivers, counts, operating)
+    found = {
+        **_amounts(drivers, total(counts), len(probability)),
+        **_scores(parameters, probability, positive),
+        "triggers": trigger_scores(total(counts)),
+        "false_per_km_allowed": parameters.false_per_km,
+        "at_false_rate": _at_rate(operating, parameters),
+        "between_drivers": _spread(drivers, counts, parameters.triggers.threshold),
+        "interval_95": _intervals(drawn),
+    }
+    return Judgement(plain(found), drivers, operating, drawn)
+
+
+def _amounts(
+    drivers: Sequence[DriverVerdicts], counts: TriggerCounts, num_samples: int
+) -> dict[str, Any]:
+    """How much was judged."""
+    return {
         "num_drivers": len(drivers),
-        "num_samples": len(probability),
-        "hours": total(counts).hours,
-        "kilometres": total(counts).kilometres,
+        "num_recordings": sum(len(one.recordings) for one in drivers),
+        "num_crossings": len(counts.leads),
+        "num_samples": num_samples,
+        "hours": counts.hours,
+        "kilometres": counts.kilometres,
+    }
+
+
+def _scores(
+    parameters: EvaluationParameters,
+    probability: NDArray[np.float64],
+    positive: NDArray[np.bool_],
+) -> dict[str, Any]:
+    """Scores over samples at natural and at even prevalence, and calibration."""
+    threshold = parameters.triggers.threshold
+    bins = metrics.calibration(probability, positive)
+    return {
         "threshold": threshold,
         "samples": sample_scores(probability, positive, threshold),
-        "triggers": trigger_scores(total(counts)),
-        "at_false_rate": at_false_rate(drivers, parameters),
-        "calibration": [
-            b._asdict() for b in metrics.calibration(probability, positive)
-        ],
-        "between_drivers": _spread(drivers, counts, threshold),
-        "interval_95": _intervals(drivers, counts, parameters),
+        "balanced": balanced_scores(probability, positive, threshold),
+        "calibration": [one._asdict() for one in bins],
     }
-    return {name: _plain(value) for name, value in result.items()}
 
 
 def _spread(
@@ -202,56 +250,34 @@ def _spread(
     return found
 
 
-def _intervals(
+def _drawn(
+    parameters: EvaluationParameters,
     drivers: Sequence[DriverVerdicts],
     counts: Sequence[TriggerCounts],
-    parameters: EvaluationParameters,
-) -> dict[str, list[float]]:
-    """95 % intervals of the main scores by resampling drivers."""
-    rng = np.random.default_rng(parameters.seed)
-    num = len(drivers)
-    times = rng.multinomial(num, np.full(num, 1.0 / num), parameters.num_resamples)
-    per_driver = [judged_samples([one]) for one in drivers]
-    binned = [metrics.binned_counts(*pair) for pair in per_driver]
-    positives = times @ np.array([p for p, _ in binned])
-    negatives = times @ np.array([n for _, n in binned])
-    threshold = parameters.triggers.threshold
-    cells = np.array([metrics.confusion(*pair, threshold) for pair in per_driver])
-    drawn: dict[str, NDArray[np.float64]] = {
-        "pr_auc": metrics.pr_auc(positives, negatives),
-        "roc_auc": metrics.roc_auc(positives, negatives),
-        **metrics.scores(metrics.Confusion(*(times @ cells).T)),
-        **_resampled_triggers(times, counts),
-    }
+    operating: OperatingCounts,
+) -> bootstrap.Drawn:
+    """All scores in all resamplings of the drivers."""
+    num, seed = parameters.num_resamples, parameters.seed
+    times = bootstrap.resamplings(len(drivers), num, seed)
     return {
-        name: [float(v) for v in np.nanpercentile(values, [2.5, 97.5])]
-        for name, values in drawn.items()
-        if np.isfinite(values).any()
+        **bootstrap.drawn_samples(drivers, times, parameters.triggers.threshold),
+        **bootstrap.drawn_triggers(counts, times),
+        **bootstrap.drawn_at_rate(operating, times, parameters.false_per_km),
     }
 
 
-def _resampled_triggers(
-    times: NDArray[np.int64], counts: Sequence[TriggerCounts]
-) -> dict[str, NDArray[np.float64]]:
-    """False triggers per kilometre and median lead of each resampling."""
-    false = times @ np.array([c.false for c in counts], np.float64)
-    driven = times @ np.array([c.kilometres for c in counts])
-    leads = np.array([lead for c in counts for lead in c.leads])
-    of_driver = np.repeat(np.arange(len(counts)), [len(c.leads) for c in counts])
-    medians = np.full(len(times), np.nan)
-    for i, row in enumerate(times):
-        drawn = np.repeat(leads, row[of_driver])
-        medians[i] = np.median(drawn) if len(drawn) else np.nan
-    with np.errstate(invalid="ignore", divide="ignore"):
-        return {"false_per_km": false / driven, "lead_time_median": medians}
+def _intervals(drawn: bootstrap.Drawn) -> dict[str, list[float]]:
+    """95 % intervals of the scores that have one."""
+    found = {name: bootstrap.interval_95(values) for name, values in drawn.items()}
+    return {name: list(ends) for name, ends in found.items() if ends is not None}
 
 
-def _plain(value: Any) -> Any:  # Any: a tree of numbers for JSON
+def plain(value: Any) -> Any:  # Any: a tree of numbers for JSON
     """NumPy numbers as Python's, NaN as None."""
     if isinstance(value, dict):
-        return {name: _plain(part) for name, part in value.items()}
-    if isinstance(value, list):
-        return [_plain(part) for part in value]
+        return {name: plain(part) for name, part in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [plain(part) for part in value]
     if isinstance(value, (float, np.floating)):
         return float(value) if math.isfinite(value) else None
     return int(value) if isinstance(value, np.integer) else value

@@ -1,23 +1,26 @@
 """Fit the network by gradient descent; the best weights on unseen drivers win.
 
 Needs JAX and Optax (extra `train`). Loss: weighted log loss. Every so many steps the
-exact window runs over the validation drivers' whole recordings, as it will in the loop;
-the weights with the lowest log loss there are kept, and the training stops when it has
-not fallen for a while.
+exact window runs over the validation drivers' whole recordings, as it will in the loop,
+in every variant that is trained for; the weights with the lowest mean log loss there
+are kept, and the training stops when it has not fallen for a while.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
+from functools import partial
 from typing import Any, NamedTuple
 
 import jax
 import jax.numpy as jnp
 import numpy as np
 import optax
-from numpy.typing import NDArray
 
+from costeer.intention.features import VARIANTS
 from costeer.intention.gru import NetworkWeights
+from costeer.intention.predictors.gru import our_probabilities
+from costeer.training.augmentation import AugmentationParameters, shares
 from costeer.training.dataset import Windows, batches
 from costeer.training.evaluate import judged_samples, sample_scores, verdicts
 from costeer.training.network import (
@@ -26,7 +29,8 @@ from costeer.training.network import (
     logits,
     network_weights,
 )
-from costeer.training.recordings import Recording
+from costeer.training.recordings import Recording, lacking
+from costeer.training.scaling import Scaling
 
 
 class FitParameters(NamedTuple):
@@ -43,18 +47,26 @@ class FitParameters(NamedTuple):
         steps_per_check: Between two looks at the validation drivers [-]. Source:
             assumed.
         patience: Looks without a better log loss before it stops [-]. Source: assumed.
+        augmentation: In which variants windows are shown.
     """
 
     batch_size: int = 256
     learning_rate: float = 5e-3
     weight_decay: float = 1e-4
     largest_gradient: float = 1.0
-    num_steps: int = 3000
-    steps_per_check: int = 250
+    num_steps: int = 5000
+    steps_per_check: int = 500
     patience: int = 5
+    augmentation: AugmentationParameters = AugmentationParameters()
 
 
 DEFAULTS = FitParameters()
+
+_ONE_IN = 2
+"""One in so many validation recordings is looked at, to save time."""
+
+_FEW = 12
+"""The same for those from which signals are taken away."""
 
 
 class CurvePoint(NamedTuple):
@@ -63,14 +75,16 @@ class CurvePoint(NamedTuple):
     Attributes:
         step: Of the training.
         training_loss: Mean since the last look [nat].
-        validation_log_loss: All samples [nat].
-        validation_pr_auc: All samples [-].
+        validation_log_loss: All samples, mean over the variants [nat].
+        validation_pr_auc: All samples with all signals [-].
+        pr_auc: Of each variant [-].
     """
 
     step: int
     training_loss: float
     validation_log_loss: float
     validation_pr_auc: float
+    pr_auc: dict[str, float]
 
 
 class Fit(NamedTuple):
@@ -85,13 +99,6 @@ class Fit(NamedTuple):
     weights: NetworkWeights
     best: CurvePoint
     curve: list[CurvePoint]
-
-
-class Scaling(NamedTuple):
-    """Mean and standard deviation of each signal, `(feature,)`."""
-
-    mean: NDArray[np.float64]
-    scale: NDArray[np.float64]
 
 
 def weighted_loss(
@@ -118,7 +125,11 @@ def optimiser(parameters: FitParameters) -> optax.GradientTransformation:
 
 
 def descend(
-    weights: TrainedWeights, data: Windows, seed: int, parameters: FitParameters
+    weights: TrainedWeights,
+    data: Windows,
+    scale: Scaling,
+    seed: int,
+    parameters: FitParameters,
 ) -> Iterator[tuple[TrainedWeights, jax.Array]]:
     """Weights and loss after each step."""
     rule = optimiser(parameters)
@@ -130,25 +141,40 @@ def descend(
         change, memory = rule.update(slope, memory, weights)
         return optax.apply_updates(weights, change), memory, loss
 
-    for batch in batches(data, parameters.batch_size, seed):
-        weights, memory, loss = update(weights, memory, batch)
+    drawn = batches(data, scale, parameters.batch_size, seed, parameters.augmentation)
+    for batch in drawn:
+        weights, memory, loss = update(weights, memory, tuple(batch))
         yield weights, loss
 
 
 def look(
     weights: NetworkWeights,
     recordings: Sequence[Recording],
+    variants: Sequence[str],
     step: int,
     training_loss: float,
 ) -> CurvePoint:
-    """Judge weights on whole recordings."""
-    said, truth = judged_samples(verdicts(weights, recordings))
-    scores = sample_scores(said, truth, 0.5)
+    """Judge weights on whole recordings, in each variant.
+
+    Args:
+        weights: To judge.
+        recordings: Of drivers who do not train.
+        variants: Names of `features.VARIANTS`, the one with most signals first.
+        step: Of the training.
+        training_loss: Mean since the last look [nat].
+    """
+    predict = partial(our_probabilities, weights)
+    found = {}
+    for variant in variants:
+        chosen = recordings[:: _ONE_IN if variant == variants[0] else _FEW]
+        seen = [lacking(one, VARIANTS[variant]) for one in chosen]
+        found[variant] = sample_scores(*judged_samples(verdicts(predict, seen)), 0.5)
     return CurvePoint(
         step=step,
         training_loss=training_loss,
-        validation_log_loss=scores["log_loss"],
-        validation_pr_auc=scores["pr_auc"],
+        validation_log_loss=float(np.mean([s["log_loss"] for s in found.values()])),
+        validation_pr_auc=found[variants[0]]["pr_auc"],
+        pr_auc={variant: scores["pr_auc"] for variant, scores in found.items()},
     )
 
 
@@ -164,8 +190,8 @@ def fit(
     """Train one network.
 
     Args:
-        data: Training windows, scaled.
-        scaling: By which they were.
+        data: Training windows.
+        scaling: Of their signals.
         validation: Recordings of other drivers.
         hidden: Size of the hidden state.
         seed: Of the first weights and the order of the windows.
@@ -173,17 +199,19 @@ def fit(
         progress: Told after each look how many steps were done.
     """
     prevalence = float(np.average(data.positive, weights=data.weight))
+    variants = trained_variants(parameters.augmentation)
     start = initial_weights(hidden, prevalence, seed)
     curve: list[CurvePoint] = []
     best: Fit | None = None
     losses: list[jax.Array] = []
-    for step, (weights, loss) in enumerate(descend(start, data, seed, parameters), 1):
+    steps = descend(start, data, scaling, seed, parameters)
+    for step, (weights, loss) in enumerate(steps, 1):
         losses.append(loss)
         if step % parameters.steps_per_check and step < parameters.num_steps:
             continue
-        network = network_weights(weights, *scaling)
+        network = network_weights(weights, scaling)
         mean_loss = float(np.mean(jax.device_get(losses)))
-        curve.append(look(network, validation, step, mean_loss))
+        curve.append(look(network, validation, variants, step, mean_loss))
         if best is None or _loss(curve[-1]) < _loss(best.best):
             best = Fit(weights=network, best=curve[-1], curve=curve)
         if progress:
@@ -193,6 +221,12 @@ def fit(
             break
     assert best is not None  # the first look is always the best so far
     return best
+
+
+def trained_variants(augmentation: AugmentationParameters) -> list[str]:
+    """Names of the variants that windows are shown in."""
+    each = zip(VARIANTS, shares(augmentation), strict=True)
+    return [variant for variant, share in each if share > 0.0]
 
 
 def _loss(point: CurvePoint) -> float:

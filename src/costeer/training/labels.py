@@ -11,7 +11,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from jaxtyping import Int, Int8
+from jaxtyping import Float, Int, Int8
 from numpy.typing import NDArray
 
 from costeer.intention.features import SAMPLE_RATE
@@ -72,3 +72,26 @@ def labels(
         positive=soon & (direction == side),
         known=soon | (here + reach < num_samples),
     )
+
+
+def time_to_crossing(
+    crossing: Int8[NDArray[np.int8], " time"],
+    side: Int8[NDArray[np.int8], " time"],
+) -> Float[NDArray[np.float64], " time"]:
+    """Time until the car crosses to the adjacent side [s].
+
+    Args:
+        crossing: -1 or +1 at the first sample in a new lane, else 0, `(time,)`.
+        side: Side of the adjacent lane, -1 or +1, `(time,)`.
+
+    Returns:
+        Infinite where no crossing follows or the next one leads to the other side,
+        `(time,)`.
+    """
+    here = np.arange(len(crossing))
+    where = np.flatnonzero(crossing)
+    following = np.searchsorted(where, here, side="right")
+    next_crossing = np.append(where.astype(np.float64), np.inf)[following]
+    direction = np.append(crossing[where], 0)[following]
+    time = (next_crossing - here) / SAMPLE_RATE
+    return np.where(direction == side, time, np.inf)

@@ -7,7 +7,8 @@ bins; so one function serves a set of samples and a thousand resamplings of it.
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from collections.abc import Callable
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
 from jaxtyping import Bool, Float, Int
@@ -16,9 +17,10 @@ from numpy.typing import NDArray
 Counts = NDArray[np.float64]
 Probabilities = NDArray[np.float64]
 Truth = NDArray[np.bool_]
+Loss: TypeAlias = Callable[[Probabilities, Truth], float]
+"""Mean of a loss over samples."""
 
 NUM_BINS = 2000
-_LARGEST_LOGIT = 15.0
 
 
 def level_counts(
@@ -29,16 +31,30 @@ def level_counts(
     return _counted(level, positive, len(values))
 
 
-def binned_counts(
+def bin_edges(
     probability: Float[Probabilities, " sample"], positive: Bool[Truth, " sample"]
+) -> Float[Probabilities, " edge"]:
+    """Edges of bins that hold about as many samples of each class, ascending.
+
+    Quantiles of both classes, so that the bins follow any monotone change of the score:
+    a predictor that says everything near 1 is not counted more coarsely than others.
+    """
+    share = np.linspace(0.0, 1.0, NUM_BINS // 2 + 1)
+    classes = [probability[positive], probability[~positive]]
+    cuts = [
+        np.quantile(one, share, method="inverted_cdf") for one in classes if len(one)
+    ]
+    return np.unique(np.concatenate([np.empty(0), *cuts]))
+
+
+def binned_counts(
+    probability: Float[Probabilities, " sample"],
+    positive: Bool[Truth, " sample"],
+    edges: Float[Probabilities, " edge"],
 ) -> tuple[Float[Counts, " level"], Float[Counts, " level"]]:
-    """Positives and negatives in `NUM_BINS` bins of the logit, highest first."""
-    tiny = 1e-12
-    held = np.clip(probability, tiny, 1.0 - tiny)
-    logit = np.log(held / (1.0 - held))
-    place = (_LARGEST_LOGIT - logit) / (2.0 * _LARGEST_LOGIT) * NUM_BINS
-    level = np.clip(place, 0, NUM_BINS - 1).astype(np.int64)
-    return _counted(level, positive, NUM_BINS)
+    """Positives and negatives between the edges, highest first; one more than edges."""
+    level = len(edges) - np.searchsorted(edges, probability, side="right")
+    return _counted(level, positive, len(edges) + 1)
 
 
 def _counted(
@@ -126,6 +142,51 @@ def scores(counts: Confusion) -> dict[str, Counts]:
             "f1": 2.0 * tp / (2.0 * tp + fp + fn),
         }
     return {name: np.asarray(value) for name, value in found.items()}
+
+
+def balanced(counts: Confusion) -> Confusion:
+    """The same answers if half of all samples were positive; each class sums to 0.5."""
+    tp, fp, fn, tn = counts
+    with np.errstate(invalid="ignore", divide="ignore"):
+        yes, no = 0.5 / (tp + fn), 0.5 / (tn + fp)
+        return Confusion(tp * yes, fp * no, fn * yes, tn * no)
+
+
+def balanced_levels(
+    positives: Float[Counts, "*batch level"], negatives: Float[Counts, "*batch level"]
+) -> tuple[Float[Counts, "*batch level"], Float[Counts, "*batch level"]]:
+    """Counts per level if half of all samples were positive; each class sums to 0.5."""
+    with np.errstate(invalid="ignore", divide="ignore"):
+        yes = 0.5 * positives / positives.sum(axis=-1, keepdims=True)
+        no = 0.5 * negatives / negatives.sum(axis=-1, keepdims=True)
+    return yes, no
+
+
+def with_even_odds(
+    probability: Float[Probabilities, " sample"], prevalence: float
+) -> Float[Probabilities, " sample"]:
+    """What was said at one prevalence, as it would be said if half were positive.
+
+    Bayes: the odds are divided by those of the prevalence.
+    """
+    yes, no = probability * (1.0 - prevalence), (1.0 - probability) * prevalence
+    return np.asarray(yes / np.maximum(yes + no, 1e-300))
+
+
+def pr_curve(
+    positives: Float[Counts, " level"], negatives: Float[Counts, " level"]
+) -> tuple[Float[Counts, " level"], Float[Counts, " level"]]:
+    """Recall and precision at each level, highest level first."""
+    true, false = np.cumsum(positives), np.cumsum(negatives)
+    return true / max(true[-1], 1.0), true / np.maximum(true + false, 1e-300)
+
+
+def roc_curve(
+    positives: Float[Counts, " level"], negatives: Float[Counts, " level"]
+) -> tuple[Float[Counts, " level"], Float[Counts, " level"]]:
+    """Share of the negatives and of the positives above each level."""
+    true, false = np.cumsum(positives), np.cumsum(negatives)
+    return false / max(false[-1], 1.0), true / max(true[-1], 1.0)
 
 
 def brier(

@@ -9,8 +9,9 @@ import jax.numpy as jnp
 import numpy as np
 from numpy.typing import NDArray
 
-from costeer.intention.features import NUM_FEATURES
+from costeer.intention.features import NUM_INPUTS
 from costeer.intention.gru import NetworkWeights
+from costeer.training.scaling import Scaling
 
 LONG_MEMORY = 2.0
 """Bias of the update gate at the start: a state lasts for 8 samples, not for 2 [-]."""
@@ -20,7 +21,7 @@ class TrainedWeights(NamedTuple):
     """Weights as the training changes them, gates side by side.
 
     Attributes:
-        input_weights: `(feature, gate * hidden)`.
+        input_weights: `(input, gate * hidden)`.
         input_bias: `(gate * hidden,)`.
         hidden_weights: `(hidden, gate * hidden)`.
         hidden_bias: `(gate * hidden,)`.
@@ -46,7 +47,7 @@ def initial_weights(hidden: int, prevalence: float, seed: int) -> TrainedWeights
 
     slow = np.repeat([0.0, LONG_MEMORY, 0.0], hidden)
     return TrainedWeights(
-        input_weights=draw(NUM_FEATURES, 3 * hidden),
+        input_weights=draw(NUM_INPUTS, 3 * hidden),
         input_bias=jnp.asarray(slow, jnp.float32),
         hidden_weights=draw(hidden, 3 * hidden),
         hidden_bias=jnp.zeros(3 * hidden),
@@ -63,7 +64,7 @@ def logits(weights: TrainedWeights, windows: jax.Array) -> jax.Array:
 
     Args:
         weights: Of the network.
-        windows: Scaled features, shape `(batch, time, feature)`.
+        windows: Network inputs, shape `(batch, time, input)`.
 
     Returns:
         Shape `(batch,)`.
@@ -86,11 +87,7 @@ def logits(weights: TrainedWeights, windows: jax.Array) -> jax.Array:
     return last @ weights.output_weights + weights.output_bias
 
 
-def network_weights(
-    weights: TrainedWeights,
-    mean: NDArray[np.float64],
-    scale: NDArray[np.float64],
-) -> NetworkWeights:
+def network_weights(weights: TrainedWeights, scaling: Scaling) -> NetworkWeights:
     """The trained weights as the rest of costeer takes them."""
     hidden = weights.output_weights.shape[0]
 
@@ -99,12 +96,31 @@ def network_weights(
         return np.asarray(values.T, np.float32).reshape(3, hidden, *values.shape[:-1])
 
     return NetworkWeights(
-        feature_mean=mean,
-        feature_scale=scale,
+        feature_mean=scaling.mean,
+        feature_scale=scaling.scale,
+        dispensable=scaling.dispensable,
         input_weights=gates(weights.input_weights),
         input_bias=gates(weights.input_bias),
         hidden_weights=gates(weights.hidden_weights),
         hidden_bias=gates(weights.hidden_bias),
         output_weights=np.asarray(weights.output_weights, np.float32),
         output_bias=np.asarray(weights.output_bias, np.float32).reshape(1),
+    )
+
+
+def trained_weights(network: NetworkWeights) -> TrainedWeights:
+    """The weights of a network as the training changes them."""
+    hidden = network.output_weights.shape[0]
+
+    def side_by_side(values: NDArray[np.float32]) -> jax.Array:
+        """Move the gates to the end, `(..., gate * hidden)`."""
+        return jnp.asarray(values.reshape(3 * hidden, *values.shape[2:]).T)
+
+    return TrainedWeights(
+        input_weights=side_by_side(network.input_weights),
+        input_bias=side_by_side(network.input_bias),
+        hidden_weights=side_by_side(network.hidden_weights),
+        hidden_bias=side_by_side(network.hidden_bias),
+        output_weights=jnp.asarray(network.output_weights),
+        output_bias=jnp.asarray(network.output_bias[0]),
     )

@@ -1,13 +1,14 @@
 """Recordings as training and judging see them, from trial records or any table.
 
-A table needs the names of spec section 6: `time`, `lane` and the six signals of
-Eq. (1), at 60 Hz. `sequence` marks separate stretches, `participant` the driver,
-`crossing` (-1, 0, +1) the samples of crossings; without it they follow from `lane`.
+A table has the names of the trial record, at 60 Hz: `time`, `longitudinal_velocity`
+and what else there is of the six signals of Eq. (1). `sequence` marks separate
+stretches, `participant` the driver, `crossing` (-1, 0, +1) the samples of crossings;
+without it they follow from `lane`. tables.py says what else a table may tell or lack.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -15,19 +16,30 @@ import numpy as np
 from numpy.typing import NDArray
 
 from costeer.intention.features import (
+    ADJACENT_LEFT,
+    ADJACENT_RIGHT,
+    DISTANCE,
     FEATURES,
     SAMPLE_RATE,
-    adjacent_side,
+    WINDOW_LENGTH,
     feature_series,
+    mirrored,
 )
 from costeer.loop.columns import text_told
 from costeer.loop.plausible import suspicions
 from costeer.loop.record import TrialRecord, read_recording
-from costeer.training.labels import Labels, crossings, labels
+from costeer.training.labels import Labels, labels
+from costeer.training.tables import (
+    Columns,
+    absent_signals,
+    courses,
+    crossings_of,
+    remarks,
+    resampled,
+    with_distance,
+)
 
-Columns = Mapping[str, NDArray[Any]]
-
-_NEEDED = ("time", "lane", *FEATURES)
+_NEEDED = ("time", "longitudinal_velocity")
 _RATE_TOLERANCE = 0.02
 
 
@@ -37,108 +49,172 @@ class Recording(NamedTuple):
     Attributes:
         driver: Who drove; splits and spreads go by it.
         name: Of the stretch, for messages.
-        features: Signals of Eq. (1), facing right, in their units, `(time, feature)`.
+        features: Signals of Eq. (1), facing right, in their units, `(time, feature)`;
+            NaN where a signal is missing.
         side: Side of the adjacent lane, -1 or +1, `(time,)`.
-        intended: Crossings that the driver meant, -1 or +1 at the first sample in the
-            new lane, else 0, `(time,)`.
+        crossing: All crossings, -1 or +1 at the first sample in the new lane, else 0,
+            `(time,)`.
+        intended: Those that the driver meant, `(time,)`.
         labels: Truth at each sample.
         notes: What the reader should know before trusting a judgement.
+        absent: Names of the signals that the recording does not have.
     """
 
     driver: str
     name: str
     features: NDArray[np.float64]
     side: NDArray[np.int8]
+    crossing: NDArray[np.int8]
     intended: NDArray[np.int8]
     labels: Labels
     notes: tuple[str, ...] = ()
+    absent: tuple[str, ...] = ()
 
 
 def recording(driver: str, name: str, columns: Columns) -> Recording:
-    """One stretch from its columns.
+    """One stretch from its columns, for a network that runs once.
+
+    Raises:
+        ValueError: If a column is missing or holds what it cannot, the rate is not 60
+            Hz, or the network has to run once for each side (`runs`).
+    """
+    found = runs(driver, name, columns)
+    if len(found) > 1:
+        raise ValueError(
+            f"{name} has {len(found)} runs, one for each side; give the lane (0 right, "
+            "1 left) or adjacent_side (-1 right, +1 left)"
+        )
+    return found[0]
+
+
+def runs(driver: str, name: str, columns: Columns) -> list[Recording]:
+    """The recordings of a stretch: one on two lanes, else one for each side.
 
     Raises:
         ValueError: If a column is missing or holds what it cannot, or the rate is not
             60 Hz.
     """
     _check(name, columns)
-    lane = _whole(name, columns, "lane", (0, 1), "0 (right) or 1 (left)")
-    side = adjacent_side(lane)
-    crossing = (
-        _whole(name, columns, "crossing", (-1, 0, 1), "-1 (right), 0 or +1 (left)")
-        if "crossing" in columns
-        else crossings(lane)
-    )
-    return Recording(
-        driver=driver,
-        name=name,
-        features=feature_series(_tracked(columns), side),
-        side=side,
-        intended=_intended(crossing, columns),
-        labels=labels(crossing, side),
-        notes=tuple(
-            f"{name}: {each.words}; if so, multiply it by {each.factor:.6g}"
-            for each in suspicions(columns)
-        ),
-    )
-
-
-def _whole(
-    name: str, columns: Columns, column: str, allowed: tuple[int, ...], words: str
-) -> NDArray[np.int8]:
-    """A column of few values, each of them allowed."""
-    values = np.ma.filled(columns[column].astype(np.float64), np.nan)
-    wrong = np.flatnonzero(~np.isin(values, allowed))
-    if wrong.size:
-        raise ValueError(
-            f"{name}: {column} is {values[wrong[0]]:g} in row {wrong[0]}; give {words}"
+    columns = with_distance(columns)
+    crossing = crossings_of(name, columns)
+    return [
+        Recording(
+            driver=driver,
+            name=name + course.words,
+            features=feature_series(_tracked(columns), course.side),
+            side=course.side,
+            crossing=crossing,
+            intended=_intended(crossing, course.side, columns),
+            labels=labels(crossing, course.side),
+            notes=_notes(name, columns),
+            absent=absent_signals(columns),
         )
-    return values.astype(np.int8)
+        for course in courses(name, columns)
+    ]
+
+
+def _notes(name: str, columns: Columns) -> tuple[str, ...]:
+    """What should be known before a judgement is trusted."""
+    units = [
+        f"{name}: {each.words}; if so, multiply it by {each.factor:.6g}"
+        for each in suspicions(columns)
+    ]
+    return (*units, *remarks(name, columns))
+
+
+def lacking(recording: Recording, absent: Sequence[str]) -> Recording:
+    """The same recording without some more of its signals."""
+    known = {*recording.absent, *absent}
+    return recording._replace(absent=tuple(n for n in FEATURES if n in known))
+
+
+def wide_views(recording: Recording, lane_width: float = 3.5) -> list[Recording]:
+    """A two-lane recording as on a road with more lanes: one run per side.
+
+    With lanes on both sides the network runs once per side. Such a run sees the lines
+    of one side only, and cars that move away from them and cross on the other side.
+
+    Args:
+        recording: Of a road with two lanes.
+        lane_width: Of that road [m].
+
+    Returns:
+        The run to the right and the run to the left.
+    """
+    crossing, features = recording.crossing, recording.features
+    views = []
+    for name, side in (("right", ADJACENT_RIGHT), ("left", ADJACENT_LEFT)):
+        other = recording.side != side
+        seen = np.where(other[:, None], mirrored(features), features)
+        distance = features[:, DISTANCE]
+        seen[:, DISTANCE] = np.where(other, lane_width - distance, distance)
+        sides = np.full_like(recording.side, side)
+        views.append(
+            recording._replace(
+                name=f"{recording.name} to the {name}",
+                features=seen,
+                side=sides,
+                intended=np.where(recording.intended == side, side, 0).astype(np.int8),
+                labels=labels(crossing, sides),
+            )
+        )
+    return views
 
 
 def _tracked(columns: Columns) -> dict[str, NDArray[np.float64]]:
-    """The six signals; head yaw is NaN where the head was not tracked."""
-    series = {name: np.array(columns[name], np.float64) for name in FEATURES}
+    """The six signals, NaN where missing; head yaw where the head was not tracked."""
+    nothing = np.full(len(columns["time"]), np.nan)
+    series = {name: np.array(columns.get(name, nothing), float) for name in FEATURES}
     if "head_yaw_valid" in columns:
         lost = ~np.asarray(columns["head_yaw_valid"], bool)
         series["head_yaw"][lost] = np.nan
     return series
 
 
-def _intended(crossing: NDArray[np.int8], columns: Columns) -> NDArray[np.int8]:
-    """Crossings that a virtual driver meant; of people all count."""
+def _intended(
+    crossing: NDArray[np.int8], side: NDArray[np.int8], columns: Columns
+) -> NDArray[np.int8]:
+    """Crossings to the adjacent side that a virtual driver meant; of people all count.
+
+    Others are not the business of a run that looks to one side.
+    """
+    before = np.concatenate([side[:1], side[:-1]])
     decided = columns.get("driver_intention")
-    if decided is None:
-        return crossing
-    unknown = np.ma.getmaskarray(decided)
-    meant = unknown | (np.ma.getdata(decided) == crossing)
+    meant = crossing == before
+    if decided is not None:
+        unknown = np.ma.getmaskarray(decided)
+        meant &= unknown | (np.ma.getdata(decided) == crossing)
     return np.where(meant, crossing, 0).astype(np.int8)
 
 
 def _check(name: str, columns: Columns) -> None:
+    _check_names(name, columns)
+    _check_rate(name, columns)
+
+
+def _check_names(name: str, columns: Columns) -> None:
+    """Refuse a table without what every stretch needs."""
     missing = [column for column in _NEEDED if column not in columns]
     if missing:
-        names = ", ".join(missing)
-        inputs = [column for column in missing if column in FEATURES]
-        variant = (
-            f" The network needs all six signals of Eq. (1): there is no variant "
-            f"without {', '.join(inputs)}."
-            if inputs
-            else ""
-        )
         raise ValueError(
-            f"{name} has no column {names}; names are those of the trial record."
-            + variant
+            f"{name} has no column {', '.join(missing)}; names are those of the trial "
+            "record"
         )
-    for column in (*_NEEDED, *({"crossing"} & columns.keys())):
+    named = ("crossing", "lane", "adjacent_side", *FEATURES)
+    for column in (*_NEEDED, *(n for n in named if n in columns)):
         _check_numbers(name, column, columns[column])
+
+
+def _check_rate(name: str, columns: Columns) -> None:
+    """Refuse rows that do not come at 60 Hz."""
     steps = np.diff(np.asarray(columns["time"], np.float64))
     wrong = np.flatnonzero(~(np.abs(steps * SAMPLE_RATE - 1.0) < _RATE_TOLERANCE))
     if wrong.size:
         raise ValueError(
             f"{name}: {steps[wrong[0]]:.6g} s lie between rows {wrong[0]} and "
             f"{wrong[0] + 1}; the network needs {SAMPLE_RATE:g} rows a second without "
-            "gaps: resample, and mark separate stretches in the column 'sequence'"
+            "gaps: resample (costeer evaluate --resample), and mark separate stretches "
+            "in the column 'sequence'"
         )
 
 
@@ -147,25 +223,47 @@ def _check_numbers(name: str, column: str, values: NDArray[Any]) -> None:
         raise ValueError(f"{name}: {text_told(column, values)}")
 
 
-def recordings_of(record: TrialRecord, name: str) -> list[Recording]:
+def recordings_of(
+    record: TrialRecord, name: str, resample: bool = False
+) -> list[Recording]:
     """The stretches of a trial record or of a table.
 
     Args:
         record: As `read_recording` gives it.
         name: For messages.
+        resample: Bring a table of another rate to 60 Hz.
+
+    Returns:
+        Notes on the whole table stand with the first.
 
     Raises:
-        ValueError: As `recording` does.
+        ValueError: As `runs` does.
     """
     columns = record.columns
     if record.metadata:
         driver = f"{record.metadata['seed']}-{record.metadata['participant']}"
-        return [recording(driver, name, columns)]
-    if "sequence" not in columns:
-        return [recording(_driver(columns, name), name, columns)]
+        return runs(driver, name, columns)
+    _check_names(name, columns)
+    parts = [(name, dict(columns))]
+    if "sequence" in columns:
+        parts = [(f"{name}:{label}", part) for label, part in _stretches(columns)]
+    if resample:
+        parts = [(label, resampled(label, part)) for label, part in parts]
+    found = [
+        one for label, part in parts for one in runs(_driver(part, label), label, part)
+    ]
+    notes = (*_notes(name, columns), *_too_short(name, found))
+    return [r._replace(notes=() if i else notes) for i, r in enumerate(found)]
+
+
+def _too_short(name: str, found: Sequence[Recording]) -> list[str]:
+    """Say how many stretches give no verdict at all."""
+    short = sum(len(one.side) < WINDOW_LENGTH for one in found)
+    if not short:
+        return []
     return [
-        recording(_driver(part, f"{name}:{label}"), f"{name}:{label}", part)
-        for label, part in _stretches(columns)
+        f"{name}: {short} of {len(found)} stretches are shorter than a window of "
+        f"{WINDOW_LENGTH} rows and give no verdict"
     ]
 
 
@@ -187,8 +285,12 @@ def _driver(columns: Columns, otherwise: str) -> str:
     return otherwise
 
 
-def read_recordings(paths: Sequence[Path]) -> list[Recording]:
+def read_recordings(paths: Sequence[Path], resample: bool = False) -> list[Recording]:
     """Read trial records or tables (CSV, Parquet).
+
+    Args:
+        paths: The files.
+        resample: Bring tables of another rate to 60 Hz.
 
     Raises:
         ValueError: If a file cannot be understood or lacks columns, naming it.
@@ -196,5 +298,5 @@ def read_recordings(paths: Sequence[Path]) -> list[Recording]:
     """
     found = []
     for path in paths:
-        found += recordings_of(read_recording(path), str(path))
+        found += recordings_of(read_recording(path), str(path), resample)
     return found

@@ -59,26 +59,73 @@ class TriggerCounts(NamedTuple):
     hours: float
 
 
+class Announced(NamedTuple):
+    """What a trigger at each sample would announce.
+
+    Attributes:
+        lead: Time until the next crossing to the side of the adjacent lane that the
+            driver meant [s], infinite without one, `(time,)`.
+        target: Place of that crossing among those that are judged, -1 without one,
+            `(time,)`.
+        num_crossings: That are judged: with a verdict at the sample before.
+    """
+
+    lead: NDArray[np.float64]
+    target: NDArray[np.int64]
+    num_crossings: int
+
+
+def announced(recording: Recording, running: NDArray[np.bool_]) -> Announced:
+    """Crossings that triggers can announce.
+
+    Args:
+        recording: With the crossings that the driver meant.
+        running: Whether there is a verdict, `(time,)`.
+    """
+    crossed = np.flatnonzero(recording.intended)
+    crossed = crossed[running[np.maximum(crossed - 1, 0)]]
+    here = np.arange(len(running))
+    lead = np.full(len(running), np.inf)
+    target = np.full(len(running), -1)
+    for side in (-1, 1):
+        own = np.flatnonzero(recording.intended[crossed] == side)
+        place = np.searchsorted(crossed[own], here, side="right")
+        rows = np.flatnonzero((recording.side == side) & (place < len(own)))
+        target[rows] = own[place[rows]]
+        lead[rows] = (crossed[target[rows]] - rows) / SAMPLE_RATE
+    return Announced(lead=lead, target=target, num_crossings=len(crossed))
+
+
+def sustained(
+    probability: NDArray[np.float64], parameters: TriggerParameters
+) -> NDArray[np.float64]:
+    """Lowest of the last `trigger_samples` verdicts, `(time,)`.
+
+    A trigger may begin where this reaches the threshold. NaN, and what lies before the
+    start, is no positive: minus infinity.
+    """
+    length = parameters.trigger_samples
+    values = np.where(np.isfinite(probability), probability, -np.inf)
+    padded = np.concatenate([np.full(length - 1, -np.inf), values])
+    num = len(values)
+    return np.asarray(np.minimum.reduce([padded[k : k + num] for k in range(length)]))
+
+
 def onsets(
     probability: NDArray[np.float64], parameters: TriggerParameters
 ) -> NDArray[np.int64]:
     """Samples at which a merged trigger begins; NaN is no positive."""
-    rises = _rises(probability, parameters)
-    apart = np.diff(rises, prepend=-(10**9)) > parameters.merge * SAMPLE_RATE
-    return rises[apart]
+    held = sustained(probability, parameters) >= parameters.threshold
+    rises = np.flatnonzero(held & ~np.concatenate([[False], held[:-1]]))
+    return rises[apart(rises, parameters)]
 
 
-def _rises(
-    probability: NDArray[np.float64], parameters: TriggerParameters
-) -> NDArray[np.int64]:
-    """Samples at which enough positives in a row are complete for the first time."""
-    with np.errstate(invalid="ignore"):
-        positive = probability >= parameters.threshold
-    total = np.concatenate([[0], np.cumsum(positive)])
-    length = parameters.trigger_samples
-    held = np.zeros(len(positive), bool)
-    held[length - 1 :] = total[length:] - total[:-length] == length
-    return np.flatnonzero(held & ~np.concatenate([[False], held[:-1]]))
+def apart(
+    places: NDArray[np.int64], parameters: TriggerParameters
+) -> NDArray[np.bool_]:
+    """Which of the ascending places are too far from the one before to merge."""
+    gaps = np.diff(places, prepend=-(10**9))
+    return np.asarray(gaps > parameters.merge * SAMPLE_RATE)
 
 
 def judge(
@@ -94,38 +141,27 @@ def judge(
         parameters: Threshold and debounce.
     """
     running = np.isfinite(probability)
-    crossed = np.flatnonzero(recording.intended)
-    crossed = crossed[running[np.maximum(crossed - 1, 0)]]
-    first: dict[int, float] = {}
-    true = early = false = 0
-    for row in onsets(probability, parameters):
-        target, lead = _announced(recording, crossed, int(row))
-        if lead > parameters.early_horizon:
-            false += 1
-            continue
-        true += lead <= PREDICTION_HORIZON
-        early += lead > PREDICTION_HORIZON
-        first.setdefault(target, lead)
-    driven = recording.features[running, _VELOCITY].sum() / SAMPLE_RATE
+    told = announced(recording, running)
+    rows = onsets(probability, parameters)
+    lead = told.lead[rows]
+    useful = lead <= parameters.early_horizon
+    true = int(np.sum(lead <= PREDICTION_HORIZON))
+    leads = np.zeros(told.num_crossings)
+    np.maximum.at(leads, told.target[rows[useful]], lead[useful])
     return TriggerCounts(
         true=true,
-        early=early,
-        false=false,
-        leads=tuple(first.get(int(c), 0.0) for c in crossed),
-        kilometres=float(driven) / 1000.0,
+        early=int(useful.sum()) - true,
+        false=int(np.sum(~useful)),
+        leads=tuple(float(each) for each in leads),
+        kilometres=kilometres(recording, running),
         hours=float(running.sum()) / SAMPLE_RATE / 3600.0,
     )
 
 
-def _announced(
-    recording: Recording, crossed: NDArray[np.int64], row: int
-) -> tuple[int, float]:
-    """Next crossing to the side of a trigger, and the time until then [s]."""
-    later = crossed[crossed > row]
-    same = later[recording.intended[later] == recording.side[row]]
-    if len(same) == 0:
-        return -1, float("inf")
-    return int(same[0]), float(same[0] - row) / SAMPLE_RATE
+def kilometres(recording: Recording, running: NDArray[np.bool_]) -> float:
+    """Driven while there were verdicts [km]."""
+    driven = recording.features[running, _VELOCITY].sum() / SAMPLE_RATE
+    return float(driven) / 1000.0
 
 
 def total(parts: Sequence[TriggerCounts]) -> TriggerCounts:

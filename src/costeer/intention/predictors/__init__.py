@@ -1,0 +1,1 @@
+"""Predictors of a lane crossing behind one interface, a file each."""

@@ -1,0 +1,114 @@
+"""Manual trials of virtual drivers, to learn from and to judge with.
+
+Drives to learn intention from hold more than a study: other speeds, lane changes that
+are given up, drivers who drift towards the line. The drivers themselves are those of
+the frozen population, with numbers that no study has.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
+
+from costeer.loop.scenario import TrialSetup
+from costeer.loop.trial import simulate_trial
+from costeer.training.recordings import Recording, recordings_of
+
+FIRST_PARTICIPANT = 100_001
+"""Number of the first simulated driver; those of studies count from 1."""
+
+SPEEDS_KMH = (70.0, 60.0, 80.0, 70.0, 90.0, 50.0, 70.0, 100.0)
+"""Suggested speeds that simulated drivers take in turn [km/h]; studies drive 70."""
+
+WANDER_FACTORS = (1.0, 1.0, 1.5, 1.0, 2.0)
+"""Wander in the lane over that of the population, in turn [-]: two in five drivers
+drift towards the line without a thought of changing. Source: assumed."""
+
+ABANDONED_SHARE = 0.05
+"""Share of lane changes that drivers give up [-]. Source: assumed, as in traffic that
+hides a car now and then."""
+
+FIRST_UNSEEN = 300_001
+"""Number of the first simulated driver to judge with."""
+
+
+def manual_setup(participant: int, seed: int, place: int, trial: int = 0) -> TrialSetup:
+    """A manual trial as those that the network is trained on.
+
+    Args:
+        participant: Number of the driver.
+        seed: Of the population and of all noise.
+        place: Of the driver, which picks speed and wander.
+        trial: Of this driver, counted from 1; other numbers are other drives. 0 if
+            there is one only.
+    """
+    return TrialSetup(
+        participant=participant,
+        seed=seed,
+        condition=f"manual-{trial}" if trial else "manual",
+        method="manual",
+        change_duration=math.nan,
+        speed=SPEEDS_KMH[(place + max(trial - 1, 0)) % len(SPEEDS_KMH)] / 3.6,
+        intention="off",
+        abandoned_share=ABANDONED_SHARE,
+        wander_factor=WANDER_FACTORS[place % len(WANDER_FACTORS)],
+    )
+
+
+def simulate_setups(
+    setups: Sequence[TrialSetup],
+    jobs: int = 1,
+    progress: Callable[[int], None] | None = None,
+) -> list[Recording]:
+    """Recordings of manual trials, in their order.
+
+    Args:
+        setups: Of the trials.
+        jobs: Threads.
+        progress: Told after each trial.
+    """
+    found: list[Recording] = []
+    with ThreadPoolExecutor(jobs) as pool:
+        for setup, record in zip(setups, pool.map(simulate_trial, setups), strict=True):
+            name = f"simulated driver {setup.participant} {setup.condition}"
+            found += recordings_of(record, name)
+            if progress:
+                progress(1)
+    return found
+
+
+def simulate_recordings(
+    num_drivers: int,
+    seed: int,
+    jobs: int = 1,
+    progress: Callable[[int], None] | None = None,
+) -> list[Recording]:
+    """Manual trials to learn from, one each, of other drivers than any study.
+
+    Args:
+        num_drivers: How many.
+        seed: Of the population and of all noise.
+        jobs: Threads.
+        progress: Told after each trial.
+    """
+    setups = [manual_setup(FIRST_PARTICIPANT + i, seed, i) for i in range(num_drivers)]
+    return simulate_setups(setups, jobs, progress)
+
+
+def simulate_unseen(
+    num_drivers: int,
+    seed: int,
+    jobs: int = 1,
+    progress: Callable[[int], None] | None = None,
+) -> list[Recording]:
+    """Manual trials of drivers who are in no training, one each.
+
+    Args:
+        num_drivers: How many.
+        seed: Of the population and of all noise.
+        jobs: Threads.
+        progress: Told after each trial.
+    """
+    setups = [manual_setup(FIRST_UNSEEN + i, seed, i) for i in range(num_drivers)]
+    return simulate_setups(setups, jobs, progress)

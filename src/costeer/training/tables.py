@@ -1,0 +1,281 @@
+"""What a table must be told or lack: sides, missing signals, other rates, odd columns.
+
+A table has the names of the trial record. Beside `time` and `longitudinal_velocity`
+only the crossings must be known, from `crossing` or from `lane`. A signal that is not
+there is missing, and the network does without it.
+"""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Mapping
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from costeer.intention.features import (
+    ADJACENT_LEFT,
+    ADJACENT_RIGHT,
+    FEATURES,
+    SAMPLE_RATE,
+    VARIANTS,
+    WINDOW_LENGTH,
+    adjacent_side,
+)
+from costeer.loop.columns import COLUMN_NAMES
+from costeer.training.datasets.resample import delayed, grid, held, sample_at
+from costeer.training.labels import crossings
+
+Columns = Mapping[str, NDArray[Any]]  # Any: floats, lanes or labels
+
+EXTRA_NAMES = ("sequence", "participant", "crossing", "adjacent_side")
+"""Columns of a table that a trial record does not have."""
+
+_DISTANCE = "distance_to_adjacent_lane"
+_LARGEST_STEP = 0.5  # of the distance between two rows [m]; a crossing jumps farther
+_LINE = -1.75  # lateral position of the line between the two lanes [m], spec section 6
+_HELD = ("lane", "adjacent_side", "head_yaw_valid", "sequence", "participant")
+
+
+class Course(NamedTuple):
+    """One run of the network along a stretch.
+
+    Attributes:
+        side: Of the adjacent lane, -1 or +1, `(time,)`.
+        words: What the name of the recording says of it.
+    """
+
+    side: NDArray[np.int8]
+    words: str
+
+
+def absent_signals(columns: Columns) -> tuple[str, ...]:
+    """Signals of Eq. (1) that have no column, or no value in it."""
+    return tuple(
+        name
+        for name in FEATURES
+        if name not in columns
+        or not np.isfinite(np.asarray(columns[name], np.float64)).any()
+    )
+
+
+def with_distance(columns: Columns) -> dict[str, NDArray[Any]]:
+    """Columns, with the distance from the lateral position where only that is there.
+
+    The trial record's lateral position is that on its two-lane road.
+    """
+    found = dict(columns)
+    known = {"lane", "lateral_position"} <= columns.keys()
+    if _DISTANCE in columns or not known or not on_two_lanes(columns):
+        return found
+    lateral = np.asarray(columns["lateral_position"], np.float64)
+    found[_DISTANCE] = np.abs(lateral - _LINE)
+    return found
+
+
+def on_two_lanes(columns: Columns) -> bool:
+    """Whether the lanes are those of a two-lane road."""
+    return "lane" in columns and set(np.unique(columns["lane"])) <= {0, 1}
+
+
+def crossings_of(name: str, columns: Columns) -> NDArray[np.int8]:
+    """Side of each crossing at the first sample in the new lane, else 0.
+
+    Raises:
+        ValueError: If the table does not tell when lanes are crossed.
+    """
+    if "crossing" in columns:
+        return whole(
+            name, columns, "crossing", (-1, 0, 1), "-1 (right), 0 or +1 (left)"
+        )
+    if "lane" in columns:
+        return crossings(lanes(name, columns))
+    raise ValueError(
+        f"{name} has no column crossing and no column lane; one of them must tell when "
+        "the car crosses: -1 (right) or +1 (left) at the first row in the new lane, "
+        "else 0"
+    )
+
+
+def lanes(name: str, columns: Columns) -> NDArray[np.int64]:
+    """Lanes, counted from the right.
+
+    Raises:
+        ValueError: Naming the first that is no whole number from 0 on.
+    """
+    values = np.ma.filled(columns["lane"].astype(np.float64), np.nan)
+    wrong = np.flatnonzero(~((values >= 0.0) & (values == np.round(values))))
+    if wrong.size:
+        raise ValueError(
+            f"{name}: lane is {values[wrong[0]]:g} in row {wrong[0]}; give whole "
+            "numbers, counted from the right: 0, 1, ..."
+        )
+    return values.astype(np.int64)
+
+
+def courses(name: str, columns: Columns) -> list[Course]:
+    """The runs of the network: one on two lanes, else one for each side that is known.
+
+    Raises:
+        ValueError: If it cannot be told to which side the distance is measured.
+    """
+    if "adjacent_side" in columns:
+        sides = "-1 (right) or +1 (left)"
+        return [Course(whole(name, columns, "adjacent_side", (-1, 1), sides), "")]
+    if on_two_lanes(columns):
+        return [Course(adjacent_side(lanes(name, columns).astype(np.int8)), "")]
+    every = np.ones(len(columns["time"]), np.int8)
+    if _DISTANCE in absent_signals(columns):
+        return [
+            Course(ADJACENT_RIGHT * every, " to the right"),
+            Course(ADJACENT_LEFT * every, " to the left"),
+        ]
+    return [Course(measured_side(name, columns) * every, "")]
+
+
+def measured_side(name: str, columns: Columns) -> int:
+    """Side to which the distance is measured, told from how it changes with the yaw.
+
+    A car that points to the left comes closer to a line on its left.
+
+    Raises:
+        ValueError: If that cannot be told.
+    """
+    if "yaw_angle" in absent_signals(columns):
+        raise ValueError(
+            f"{name}: it cannot be told to which side {_DISTANCE} is measured; give "
+            "the column lane (0 right, 1 left) or adjacent_side (-1 right, +1 left)"
+        )
+    moved = np.diff(np.asarray(columns[_DISTANCE], np.float64))
+    leftward = np.sin(np.asarray(columns["yaw_angle"], np.float64))[1:]
+    good = np.isfinite(moved) & np.isfinite(leftward) & (np.abs(moved) < _LARGEST_STEP)
+    together = float(np.sum(moved[good] * leftward[good]))
+    return ADJACENT_LEFT if together < 0.0 else ADJACENT_RIGHT
+
+
+def whole(
+    name: str, columns: Columns, column: str, allowed: tuple[int, ...], words: str
+) -> NDArray[np.int8]:
+    """A column of few values, each of them allowed.
+
+    Raises:
+        ValueError: Naming the first value that is not.
+    """
+    values = np.ma.filled(columns[column].astype(np.float64), np.nan)
+    wrong = np.flatnonzero(~np.isin(values, allowed))
+    if wrong.size:
+        raise ValueError(
+            f"{name}: {column} is {values[wrong[0]]:g} in row {wrong[0]}; give {words}"
+        )
+    return values.astype(np.int8)
+
+
+def remarks(name: str, columns: Columns) -> list[str]:
+    """What a reader should know of a whole table: signals and columns it lacks."""
+    return [
+        f"{name}: {words}"
+        for words in (
+            _missing(columns),
+            _unknown(columns),
+            _sides(columns),
+            *_gaps(columns),
+        )
+        if words
+    ]
+
+
+def variant_of(absent: tuple[str, ...]) -> str:
+    """Name of the variant that lacks exactly these signals, or what it lacks."""
+    known = {frozenset(lacked): name for name, lacked in VARIANTS.items()}
+    return known.get(frozenset(absent), "without " + ", ".join(absent))
+
+
+def _missing(columns: Columns) -> str:
+    absent = absent_signals(columns)
+    if not absent:
+        return ""
+    return (
+        f"no {', '.join(absent)}: the network's variant '{variant_of(absent)}' is used"
+    )
+
+
+def _unknown(columns: Columns) -> str:
+    known = (*COLUMN_NAMES, *EXTRA_NAMES)
+    odd = [column for column in columns if column not in known]
+    if not odd:
+        return ""
+    near = {
+        column: difflib.get_close_matches(column, FEATURES, 1, 0.75) for column in odd
+    }
+    meant = [f"did you mean {m[0]} by {c}?" for c, m in near.items() if m]
+    text = f"no name of a trial record and not used: {', '.join(odd)}"
+    return "; ".join([text, *meant])
+
+
+def _sides(columns: Columns) -> str:
+    if "adjacent_side" in columns or on_two_lanes(columns):
+        return ""
+    if _DISTANCE in absent_signals(columns):
+        return "no lanes of a two-lane road: judged once for each side"
+    return (
+        f"no lanes of a two-lane road: the side of {_DISTANCE} is told from the yaw "
+        "angle; give adjacent_side (-1 right, +1 left) to be sure"
+    )
+
+
+def _gaps(columns: Columns) -> list[str]:
+    """Values that are not there, in columns that are."""
+    absent = absent_signals(columns)
+    found = []
+    for name in FEATURES:
+        if name in absent:
+            continue
+        bad = int(np.sum(~np.isfinite(np.asarray(columns[name], np.float64))))
+        if bad and name == "head_yaw":
+            found.append(f"head_yaw is empty in {bad} rows: taken as a lost head")
+        elif bad:
+            found.append(
+                f"{name} is not a finite number in {bad} rows: no verdict from a "
+                f"window of {WINDOW_LENGTH} rows that holds one"
+            )
+    return found
+
+
+def resampled(name: str, columns: Columns) -> dict[str, NDArray[Any]]:
+    """A stretch of even rows at 60 Hz, without a look ahead.
+
+    Signals come one source period late; lanes and flags are the latest known; a
+    crossing stands at the first sample at or after its row.
+
+    Args:
+        name: Of the stretch, for messages.
+        columns: At the rate of the source, `(row,)` each.
+
+    Returns:
+        Shape `(time,)` each; columns of other kinds are left out.
+
+    Raises:
+        ValueError: If rows are not evenly spaced.
+    """
+    time = np.asarray(columns["time"], np.float64)
+    if len(time) < 3:
+        raise ValueError(f"{name} has {len(time)} rows; at least 3 can be resampled")
+    samples = grid(name, time)
+    num = len(samples.latest)
+    crossing = crossings_of(name, columns)
+    found: dict[str, NDArray[Any]] = {
+        "time": samples.start + np.arange(num) / SAMPLE_RATE,
+        "crossing": np.zeros(num, np.int8),
+    }
+    for row in np.flatnonzero(crossing):
+        place = sample_at(samples, float(time[row]))
+        if 0 <= place < num:
+            found["crossing"][place] = crossing[row]
+    for column, values in columns.items():
+        if column in _HELD:
+            found[column] = held(samples, values)
+        elif column in FEATURES:
+            jumps = (crossing != 0) & (column == _DISTANCE)
+            found[column] = delayed(samples, np.asarray(values, np.float64), jumps)
+    return found
