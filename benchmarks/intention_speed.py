@@ -1,50 +1,33 @@
-"""Time of one verdict of the exact window, by hidden size.
+"""One verdict of the exact window by hidden size: time, work, share of the limit.
 
-    python benchmarks/intention_speed.py
+    python benchmarks/intention_speed.py [--quick]
 
-Prints the median of a tick when compiled code calls (as the closed loop does), p50 and
-p99 of single calls from Python, the rate of useful arithmetic (matrix product only),
-and the same window in ONNX Runtime (one thread) where that is installed.
+Prints the machine, what one core of it can do at most, and for each hidden size and the
+shipped network: p50 and p99 of single verdicts called by compiled code and from Python,
+operations, bytes, their ratio, the share of the limit, and the network time of a whole
+study (34,500 s of driving) on one core. Then the same window in ONNX Runtime (one
+thread), where that is installed. docs/bench.md says how all is counted.
 """
 
 from __future__ import annotations
 
-import platform
+import argparse
 import tempfile
 import time
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
-from costeer.bench.control import verdict_seconds
-from costeer.intention.features import NUM_FEATURES, WINDOW_LENGTH, IntentionSample
+from costeer.bench.control import measure_network
+from costeer.bench.machine import machine
+from costeer.bench.timing import FULL, QUICK, Figure
+from costeer.bench.verdicts import SIZES
+from costeer.cli.bench import print_figures
+from costeer.intention.features import NUM_FEATURES, WINDOW_LENGTH
 from costeer.intention.gru import random_weights
-from costeer.intention.kernel import LAYOUT
-from costeer.intention.wavefront import (
-    advance,
-    initial_state,
-    wavefront_weights,
-)
 from costeer.intention.weights import intention_network
 
-SIZES = (8, 16, 24, 32, 48, 64)
-TICKS = 20_000
-
-
-def tick_times(hidden: int) -> NDArray[np.float64]:
-    """Seconds of each call of `advance` from Python."""
-    packed = wavefront_weights(random_weights(hidden, 1))
-    state = initial_state(packed)
-    sample = IntentionSample(*np.random.default_rng(0).normal(size=6))
-    for _ in range(200):
-        advance(packed, state, sample)
-    times = np.empty(TICKS)
-    for i in range(TICKS):
-        start = time.perf_counter()
-        advance(packed, state, sample)
-        times[i] = time.perf_counter() - start
-    return times
+RUNS = 200
 
 
 def onnx_time(hidden: int) -> float:
@@ -65,7 +48,7 @@ def onnx_time(hidden: int) -> float:
         )
     window = np.zeros((1, WINDOW_LENGTH, NUM_FEATURES), np.float32)
     runs = []
-    for _ in range(200):
+    for _ in range(RUNS):
         start = time.perf_counter()
         session.run(None, {"feature_window": window})
         runs.append(time.perf_counter() - start)
@@ -73,17 +56,15 @@ def onnx_time(hidden: int) -> float:
 
 
 def main() -> None:
-    """Print the table."""
-    print(f"{platform.processor() or platform.machine()}, {LAYOUT}, one thread")
-    print("hidden   compiled us   from Python p50   p99   GFLOP/s   ONNX Runtime us")
+    """Print the tables."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--quick", action="store_true")
+    outcome = measure_network(QUICK if parser.parse_args().quick else FULL)
+    for name, value in machine().items():
+        print(f"{name:10} {value}")
+    print_figures([found for found in outcome if isinstance(found, Figure)])
     for hidden in SIZES:
-        inside = float(np.median(verdict_seconds(random_weights(hidden, 1), 15)))
-        p50, p99 = np.percentile(tick_times(hidden), [50, 99])
-        work = 2 * 3 * hidden * hidden * WINDOW_LENGTH
-        print(
-            f"{hidden:6d} {inside * 1e6:13.1f} {p50 * 1e6:17.1f} {p99 * 1e6:5.1f} "
-            f"{work / inside / 1e9:9.0f} {onnx_time(hidden) * 1e6:17.1f}"
-        )
+        print(f"ONNX Runtime, {hidden} units: {1e6 * onnx_time(hidden):.0f} us")
 
 
 if __name__ == "__main__":

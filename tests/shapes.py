@@ -13,8 +13,10 @@ MODULES = (
     "costeer.study.repeated",
     "costeer.study.reversals",
     "costeer.study.ttests",
+    "costeer.training.bootstrap",
     "costeer.training.labels",
     "costeer.training.metrics",
+    "costeer.training.operating",
 )
 """Modules whose array arguments are checked; only such as Numba does not compile."""
 

@@ -2,36 +2,18 @@
 
 from __future__ import annotations
 
-import numpy as np
-from numpy.typing import NDArray
-
 from costeer.base.packing import pack
-from costeer.bench.timing import (
-    Effort,
-    Figure,
-    Outcome,
-    Skipped,
-    figure,
-    percentiles,
-    seconds_of,
-)
+from costeer.bench.limit import measure_limit
+from costeer.bench.timing import Effort, Figure, Outcome, Skipped, percentiles
+from costeer.bench.verdicts import SIZES, measure_verdict
 from costeer.controller.realtime import ControlInput, control_step, packed_controller
-from costeer.intention.features import NUM_FEATURES, IntentionSample
-from costeer.intention.gru import NetworkWeights
-from costeer.intention.wavefront import (
-    advance,
-    crossing_probabilities,
-    initial_state,
-    wavefront_weights,
-)
+from costeer.intention.gru import hidden_size, random_weights
 from costeer.loop import step as loop
 from costeer.loop.trial import shipped_network
 from costeer.plant.road import cruising_lane
 
 CONTROL_STEP_BUDGET = 20.0
 """99th percentile of a control step without the network [us]."""
-
-_SAMPLES = 2_000
 
 
 def measure_control_step(effort: Effort) -> Outcome:
@@ -62,36 +44,16 @@ def _against_budget(found: Figure) -> Figure:
 
 
 def measure_network(effort: Effort) -> Outcome:
-    """One verdict of the exact window: inside compiled code, and from Python."""
+    """One verdict of the exact window, by hidden size, beside what the core can do."""
+    limit = measure_limit(effort)
+    peak = 1e9 * limit[0].high
+    networks = {f"{size} units": random_weights(size, 1) for size in SIZES}
+    outcome: Outcome = list(limit)
     try:
-        network = shipped_network()
+        shipped = shipped_network().weights
+        networks[f"shipped, {hidden_size(shipped)} units"] = shipped
     except (OSError, ValueError) as error:
-        return [Skipped("network", "shipped network", str(error))]
-    hidden = network.weights.output_weights.size
-    remark = f"{hidden} hidden units, exact 180-sample window"
-    seconds = verdict_seconds(network.weights, effort.rounds)
-    packed = wavefront_weights(network.weights)
-    memory, sample = initial_state(packed), IntentionSample(*([0.1] * NUM_FEATURES))
-    advance(packed, memory, sample)
-    return [
-        figure("network", "verdict in compiled code", "us", 1e6 * seconds, remark),
-        *percentiles(
-            "network",
-            "verdict from Python",
-            lambda: advance(packed, memory, sample),
-            effort._replace(calls=effort.calls // 4),
-        ),
-    ]
-
-
-def verdict_seconds(weights: NetworkWeights, rounds: int) -> NDArray[np.float64]:
-    """Time of one verdict when compiled code calls, as the closed loop does [s].
-
-    Args:
-        weights: Of the network.
-        rounds: How often it is measured.
-    """
-    features = np.random.default_rng(0).normal(size=(_SAMPLES, NUM_FEATURES))
-    crossing_probabilities(weights, features)
-    times = seconds_of(lambda: crossing_probabilities(weights, features), rounds)
-    return times / _SAMPLES
+        outcome.append(Skipped("network", "shipped network", str(error)))
+    for name, weights in networks.items():
+        outcome += measure_verdict(name, weights, peak, effort)
+    return outcome

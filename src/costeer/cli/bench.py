@@ -69,6 +69,17 @@ def _print_text(
 ) -> None:
     for name, value in about.items():
         typer.echo(f"{name:10} {value}")
+    print_figures(figures)
+    for missing in skipped:
+        typer.echo(f"skipped: {missing.name}: {missing.reason}")
+    typer.echo(
+        "Most of a ratio to a peer is compilation, not a better method: compare the "
+        "peer with costeer's car in plain Python."
+    )
+
+
+def print_figures(figures: list[Figure]) -> None:
+    """A row for each figure; verdicts of the network in a table of their own."""
     rows = [
         [
             found.name,
@@ -77,14 +88,29 @@ def _print_text(
             found.remark,
         ]
         for found in figures
+        if not _is_verdict(found)
     ]
     print_table(["measured", "unit", "median", "lowest", "highest", "remark"], rows)
-    for missing in skipped:
-        typer.echo(f"skipped: {missing.name}: {missing.reason}")
-    typer.echo(
-        "Most of a ratio to a peer is compilation, not a better method: compare the "
-        "peer with costeer's car in plain Python."
-    )
+    _print_verdicts([found for found in figures if _is_verdict(found)])
+
+
+def _is_verdict(found: Figure) -> bool:
+    """Whether a figure belongs to the table of verdicts by hidden size."""
+    return found.group.startswith("verdict, ")
+
+
+def _print_verdicts(figures: list[Figure]) -> None:
+    """One row for each network, medians only, then what became of the budgets."""
+    if not figures:
+        return
+    names = list(dict.fromkeys(f"{found.name} [{found.unit}]" for found in figures))
+    rows: dict[str, list[str]] = {}
+    for found in figures:
+        rows.setdefault(found.group, [found.group]).append(_short(found.median))
+    print_table(["exact window", *names], list(rows.values()))
+    for found in figures:
+        if found.remark:
+            typer.echo(f"{found.group}, {found.name}: {found.remark} {found.unit}")
 
 
 def _short(value: float) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -9,10 +10,13 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from costeer.cli.console import note
-from costeer.cli.validate import fraction, positive
+from costeer.cli.validate import at_least, fraction, in_range, positive
 
 if TYPE_CHECKING:
     from costeer.training.recordings import Recording
+
+OURS = "gru"
+"""Name of costeer's own predictor, as in intention/predictors/registry.py."""
 
 _SAMPLES = (
     ("prevalence", "prevalence"),
@@ -27,6 +31,12 @@ _SAMPLES = (
     ("brier", "Brier score"),
     ("log_loss", "log loss [nat]"),
     ("calibration_error", "calibration error"),
+)
+_BALANCED = (
+    ("accuracy", "accuracy"),
+    ("accuracy_even_odds", "accuracy at even odds"),
+    ("f1", "F1"),
+    ("pr_auc", "area under precision-recall curve"),
 )
 _COUNTS = {
     "num_crossings",
@@ -51,10 +61,41 @@ _TRIGGERS = (
 
 def evaluate(
     files: Annotated[
-        list[Path], typer.Argument(help="Trial records or tables (CSV, Parquet).")
-    ],
+        list[Path] | None,
+        typer.Argument(help="Trial records or tables (CSV, Parquet)."),
+    ] = None,
     weights: Annotated[
         Path | None, typer.Option(help="File of `costeer train`; else the shipped one.")
+    ] = None,
+    predictor: Annotated[
+        str, typer.Option(help="Which predictor to judge; gru is costeer's own.")
+    ] = OURS,
+    compare: Annotated[
+        bool, typer.Option("--compare", help="Put all predictors beside it.")
+    ] = False,
+    without: Annotated[
+        list[str] | None,
+        typer.Option(metavar="SIGNAL", help="Take a signal away; may be repeated."),
+    ] = None,
+    ablations: Annotated[
+        bool, typer.Option("--ablations", help="Take signals away in turn.")
+    ] = False,
+    simulate: Annotated[
+        int | None,
+        typer.Option(
+            help="Judge on so many simulated drivers who trained nothing.",
+            callback=in_range(1, 10_000),
+        ),
+    ] = None,
+    seed: Annotated[
+        int | None, typer.Option(help="Of --simulate; 1.", callback=at_least(0))
+    ] = None,
+    dataset: Annotated[
+        str | None, typer.Option(help="Judge on a set of real driving, as ngsim_lc.")
+    ] = None,
+    data: Annotated[
+        Path | None,
+        typer.Option(help="With --dataset: folder of the sets; COSTEER_DATA."),
     ] = None,
     threshold: Annotated[
         float,
@@ -67,6 +108,9 @@ def evaluate(
             callback=positive("per km"),
         ),
     ] = 0.05,
+    out: Annotated[
+        Path | None, typer.Option(help="Folder of report, figures and tables.")
+    ] = None,
     json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
 ) -> None:
     """Judge the intention network on records or a table.
@@ -74,38 +118,48 @@ def evaluate(
     A table has the names of a trial record: time, lane, head_yaw,
     longitudinal_acceleration, longitudinal_velocity, steering_wheel_angle,
     distance_to_adjacent_lane, yaw_angle, at 60 rows a second; if wanted sequence
-    (separate stretches), participant, and crossing (-1, 0, +1 at a crossing).
+    (separate stretches), participant, and crossing (-1, 0, +1 at a crossing). Signals
+    may be missing: the command says which, and which variant of the network speaks.
 
     Example:
         costeer evaluate out/study/records/01-manual.parquet --json
+        costeer evaluate --simulate 24 --seed 7 --compare --ablations --out out/judged
+        costeer evaluate drives.csv --predictor line-time --without head_yaw
+        costeer evaluate --dataset ngsim_lc --data data --compare
     """
-    from costeer.intention.weights import load_weights
+    from costeer.cli import evaluation as parts
     from costeer.training.evaluate import DEFAULTS
-    from costeer.training.evaluate import evaluate as judge
-    from costeer.training.recordings import read_recordings
 
-    network = load_weights(weights)
+    source = parts.Source(files or [], simulate, seed, dataset, data)
+    parts.check_source(source)
+    chosen = parts.Chosen(predictor, weights, compare, tuple(without or ()), ablations)
+    parts.check_chosen(chosen)
+    if out is not None:
+        parts.prepare_folder(out)
     parameters = DEFAULTS._replace(
         triggers=DEFAULTS.triggers._replace(threshold=threshold),
         false_per_km=false_per_km,
     )
-    recordings = read_recordings(files)
+    recordings = parts.read_source(source)
     print_notes(recordings)
-    result = judge(network.weights, recordings, parameters)
-    result = {"intention_model_hash": network.hash, **result}
+    judged = parts.judge(parameters, source, chosen, recordings)
+    if out is not None:
+        parts.write_folder(out, judged)
     if json:
         import json as encoder
 
-        typer.echo(encoder.dumps(result, indent=2))
-    else:
-        print_evaluation(result, f"Network {network.hash[:12]}")
+        typer.echo(encoder.dumps(judged.facts, indent=2, allow_nan=False))
+        return
+    print_evaluation(judged.facts, judged.title)
+    parts.print_comparisons(judged)
 
 
 def print_notes(recordings: Sequence[Recording]) -> None:
     """Say what should be known before a judgement of the recordings is trusted."""
-    for recording in recordings:
-        for line in recording.notes:
-            note(f"note on {line}")
+    lines = Counter(line for recording in recordings for line in recording.notes)
+    for line, number in lines.items():
+        several = f" ({number} recordings)" if number > 1 else ""
+        note(f"note on {line}{several}")
 
 
 def print_evaluation(result: dict[str, Any], title: str) -> None:
@@ -122,15 +176,29 @@ def print_evaluation(result: dict[str, Any], title: str) -> None:
         [label, _shown(name, result[part].get(name)), _interval(intervals.get(name))]
         for part, lines in (("samples", _SAMPLES), ("triggers", _TRIGGERS))
         for name, label in lines
+        if name in result[part]
+    ]
+    balanced = result.get("balanced", {})
+    rows += [
+        [f"half positive: {label}", _shown(name, balanced[name]), ""]
+        for name, label in _BALANCED
+        if name in balanced
     ]
     print_table(["score", "value", "95 % over drivers"], rows, title=heading)
+    typer.echo(_at_rate_told(result, intervals.get("lead_time_at_false_rate")))
+
+
+def _at_rate_told(result: dict[str, Any], ends: list[float] | None) -> str:
+    """The best threshold at the fixed rate of false triggers, as a sentence."""
     fixed = result["at_false_rate"]
-    if fixed:
-        typer.echo(
-            f"At threshold {fixed['threshold']:.3f}: {fixed['false_per_km']:.3f} false "
-            f"triggers per km, median lead {_number(fixed['lead_time_median'])} s, "
-            f"missed {fixed['missed']:.0f}."
-        )
+    if not fixed:
+        return "No threshold keeps to the rate of false triggers, or nobody crossed."
+    within = f" ({_interval(ends)})" if ends else ""
+    return (
+        f"At threshold {fixed['threshold']:.3f}: {fixed['false_per_km']:.3f} false "
+        f"triggers per km, median lead {_number(fixed['lead_time_median'])} s{within}, "
+        f"missed {fixed['missed']:.0f}."
+    )
 
 
 def _shown(name: str, value: float | None) -> str:

@@ -1,17 +1,42 @@
-"""`costeer train`: fit the intention network on records."""
+"""`costeer train`: fit the intention network, or its rivals, on records."""
 
 from __future__ import annotations
 
 import os
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated, NamedTuple
 
 import typer
 
-from costeer.cli.validate import at_least, in_range
+from costeer.cli.validate import at_least, in_range, one_of
+
+if TYPE_CHECKING:
+    from costeer.training.recordings import Recording
 
 FEWEST_DRIVERS = 3
 """One each for training, validation and test."""
+
+KINDS = ("network", "baselines")
+
+
+class Source(NamedTuple):
+    """What to learn from.
+
+    Attributes:
+        files: Trial records and tables.
+        simulate: Simulated drivers.
+        seed: Of these drivers.
+        jobs: Threads to simulate with.
+        dataset: Name of a set of real driving.
+        data: Folder of the sets.
+    """
+
+    files: list[Path]
+    simulate: int
+    seed: int
+    jobs: int
+    dataset: str | None
+    data: Path | None
 
 
 def train(
@@ -29,6 +54,23 @@ def train(
             callback=in_range(0, 10_000),
         ),
     ] = 0,
+    dataset: Annotated[
+        str | None, typer.Option(help="Learn from a set of real driving, as ngsim_lc.")
+    ] = None,
+    data: Annotated[
+        Path | None, typer.Option(help="With --dataset: folder of the sets.")
+    ] = None,
+    fit: Annotated[
+        str,
+        typer.Option(
+            help="What to fit: the network, or the baselines it is compared with.",
+            callback=one_of(KINDS),
+        ),
+    ] = "network",
+    start: Annotated[
+        Path | None,
+        typer.Option(help="Go on from these weights: fine-tune to the recordings."),
+    ] = None,
     seed: Annotated[
         int,
         typer.Option(help="Of drivers, split and first weights.", callback=at_least(0)),
@@ -50,59 +92,165 @@ def train(
 ) -> None:
     """Fit the intention network on records.
 
-    Drivers are dealt to training, validation and test; the last judge the result. Needs
-    the extra `train` (JAX, Optax).
+    Drivers are dealt to training, validation and test; the last judge the result. With
+    --start all recordings are learned from and nothing is judged. Needs the extra
+    `train` (JAX, Optax, scikit-learn).
 
     Example:
         costeer train --simulate 60 --out out/intention.npz
+        costeer train --simulate 60 --fit baselines --out out/baselines.npz
+        costeer train drives.csv --start out/intention.npz --out out/tuned.npz
     """
-    if not files and not simulate:
+    source = Source(
+        files or [], simulate, seed, jobs or os.cpu_count() or 1, dataset, data
+    )
+    _check_source(source, start is not None)
+    _check_place(out)
+    _check_together(fit, start, hidden, steps)
+    if start is not None:
+        _fine_tune(source, start, steps, out)
+    elif fit == "baselines":
+        _fit_baselines(source, out)
+    else:
+        _fit_network(source, hidden, steps, out)
+
+
+def _check_together(
+    fit: str, start: Path | None, hidden: int | None, steps: int | None
+) -> None:
+    """Refuse options that have nothing to say to each other."""
+    if start is not None and (hidden or fit != "network"):
         raise ValueError(
-            "nothing to learn from: name trial records, or simulate drivers with "
-            "--simulate 60"
+            "--start goes on with a network as it is: leave out --hidden and --fit"
         )
-    if not files and simulate < FEWEST_DRIVERS:
+    if fit == "baselines" and (hidden or steps):
         raise ValueError(
-            f"--simulate {simulate} is too few: training, validation and test need "
-            f"different drivers, at least {FEWEST_DRIVERS}"
+            "--fit baselines chooses its own sizes: leave out --hidden and --steps"
         )
+
+
+def _check_source(source: Source, tunes: bool) -> None:
+    """Refuse a call that names nothing to learn from, or too little."""
+    if not source.files and not source.simulate and source.dataset is None:
+        raise ValueError(
+            "nothing to learn from: name trial records, simulate drivers with "
+            "--simulate 60, or take --dataset ngsim_lc --data FOLDER"
+        )
+    if (source.dataset is None) != (source.data is None):
+        raise ValueError(
+            "--dataset and --data go together: the name of a set and the folder that "
+            "holds it"
+        )
+    alone = not source.files and source.dataset is None
+    if alone and not tunes and source.simulate < FEWEST_DRIVERS:
+        raise ValueError(
+            f"--simulate {source.simulate} is too few: training, validation and test "
+            f"need different drivers, at least {FEWEST_DRIVERS}"
+        )
+
+
+def _recordings(source: Source) -> list[Recording]:
+    """All that is to be learned from."""
+    from costeer.cli.console import progress
+    from costeer.cli.evaluate import print_notes
+    from costeer.training.datasets.catalogue import read_dataset
+    from costeer.training.recordings import read_recordings
+    from costeer.training.simulation import simulate_recordings
+
+    found = read_recordings(source.files)
+    if source.dataset is not None and source.data is not None:
+        found += read_dataset(source.dataset, source.data)
+    print_notes(found)
+    if source.simulate:
+        with progress("simulated drivers", source.simulate) as advance:
+            found += simulate_recordings(
+                source.simulate, source.seed, source.jobs, advance
+            )
+    return found
+
+
+def _fit_network(
+    source: Source, hidden: int | None, steps: int | None, out: Path
+) -> None:
+    """Fit networks of all sizes, choose one, judge it, write it."""
     from costeer.cli.console import note, progress
-    from costeer.cli.evaluate import print_evaluation, print_notes
+    from costeer.cli.evaluate import print_evaluation
     from costeer.intention.weights import save_weights
     from costeer.training import train as training
-    from costeer.training.dataset import simulate_recordings
-    from costeer.training.recordings import read_recordings
 
-    _check_place(out)
     parameters = training.DEFAULTS
     if hidden:
         parameters = parameters._replace(hidden_sizes=(hidden,))
     if steps:
         parameters = parameters._replace(fit=parameters.fit._replace(num_steps=steps))
-    recordings = read_recordings(files or [])
-    print_notes(recordings)
-    if simulate:
-        with progress("simulated drivers", simulate) as advance:
-            recordings += simulate_recordings(
-                simulate, seed, jobs or os.cpu_count() or 1, advance
-            )
+    recordings = _recordings(source)
     total = parameters.fit.num_steps * len(parameters.hidden_sizes)
     with progress("training steps", total) as advance:
         network = training.train(
-            recordings, seed, parameters, _source(files, simulate), advance
+            recordings, source.seed, parameters, _told(source), advance
         )
     save_weights(out, network)
     note(f"hidden size {network.facts['hidden_size']}, hash {network.hash[:12]}: {out}")
     print_evaluation(network.facts["test"], "Drivers without part in the training")
 
 
-def _source(files: list[Path] | None, simulate: int) -> str:
+def _fit_baselines(source: Source, out: Path) -> None:
+    """Fit the rivals of the network on the drivers that it learns from."""
+    from costeer.cli.console import note, print_table, progress
+    from costeer.intention.predictors.store import save_baselines
+    from costeer.training.dataset import DatasetParameters, shown, split_by_driver
+    from costeer.training.predictors.baselines import (
+        FITTED,
+        train_baselines,
+        with_paper_network,
+    )
+    from costeer.training.predictors.paper_gru import FIT, fit_paper_network
+
+    split = split_by_driver(_recordings(source), source.seed, DatasetParameters())
+    wider = split._replace(training=shown(split.training))
+    with progress("baselines", len(FITTED)) as advance:
+        found = train_baselines(wider, source.seed, advance)
+    with progress("training steps of the paper's network", FIT.num_steps) as advance:
+        paper = fit_paper_network(split, source.seed, advance)
+    found = with_paper_network(found, paper.variants["full"], paper.facts)
+    save_baselines(out, found)
+    note(f"written: {out}")
+    rows = [[name, ", ".join(one.variants)] for name, one in found.items()]
+    print_table(["predictor", "variants"], rows, title="Fitted")
+
+
+def _fine_tune(source: Source, start: Path, steps: int | None, out: Path) -> None:
+    """Let a network learn from all recordings for some steps."""
+    from costeer.cli.console import note
+    from costeer.intention.weights import intention_network, load_weights, save_weights
+    from costeer.training.tuning import DEFAULTS, fine_tuned
+
+    network = load_weights(start)
+    parameters = DEFAULTS._replace(num_steps=steps) if steps else DEFAULTS
+    recordings = _recordings(source)
+    weights = fine_tuned(network.weights, recordings, source.seed, parameters)
+    facts = {
+        "source": f"{_told(source)}, from weights {network.hash[:12]}",
+        "seed": source.seed,
+        "hidden_size": network.facts.get("hidden_size"),
+        "start": {"hash": network.hash, "source": network.facts.get("source")},
+        "steps": parameters.num_steps,
+        "drivers": {"training": sorted({r.driver for r in recordings})},
+    }
+    tuned = intention_network(weights, facts)
+    save_weights(out, tuned)
+    note(f"hash {tuned.hash[:12]}: {out}; judge it on recordings it has not seen")
+
+
+def _told(source: Source) -> str:
     """What the network learned from, in words."""
     from costeer.drivers.population import POPULATION_VERSION
 
     kind = f"simulated manual drivers of population {POPULATION_VERSION}"
-    parts = [f"{simulate} {kind}"] if simulate else []
-    parts += ["files " + ", ".join(file.name for file in files)] if files else []
+    parts = [f"{source.simulate} {kind}"] if source.simulate else []
+    if source.files:
+        parts.append("files " + ", ".join(file.name for file in source.files))
+    parts += [f"set {source.dataset}"] if source.dataset else []
     return " and ".join(parts)
 
 

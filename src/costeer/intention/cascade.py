@@ -1,15 +1,15 @@
 """A cheaper form of the exact window: a watcher, and exact windows where it stirs.
 
-One carried state (carried.py) watches every sample. While its probability has been
-below a gate for some time, that is the verdict. Otherwise the verdict is that of the
-exact window, to the last bit, from a ring of the last 180 samples: the windows that end
-at this sample and at the next ones, as many as fill a tile of the kernel, are replayed
-together, and then advanced with each new sample until the last of them has ended.
+The approximate window of sparse.py watches every sample. While its probability is below
+a gate, that is the verdict. Otherwise the verdict is that of the exact window, to the
+last bit, from a ring of the last 180 samples: the windows that end at this sample and
+at the next ones, as many as fill a tile of the kernel, are replayed together, and then
+advanced with each new sample until the last of them has ended.
 
 So a verdict of at least 0.5 is always the exact one; what can differ is a verdict that
-the watcher put below the gate. docs/bench.md says on how many kilometres none did. It
-is an option for runs that must be cheap. On a real-time drive the exact wavefront is
-the better choice: a replay takes 180 steps of a tile in one tick.
+the watcher put below the gate. That none did is tested, not proven: docs/bench.md says
+on how many kilometres. It is an option for long batches. On a real-time drive the exact
+wavefront is the better choice, because a replay takes 180 steps of a tile in one tick.
 """
 
 from __future__ import annotations
@@ -22,11 +22,11 @@ from numpy.typing import NDArray
 
 from costeer.base.array import compiled
 from costeer.base.entry import entry
-from costeer.intention import carried, wavefront
-from costeer.intention.carried import CarriedState, CarriedWeights, carry_on
+from costeer.intention import sparse, wavefront
 from costeer.intention.features import NUM_FEATURES, WINDOW_LENGTH, IntentionSample
 from costeer.intention.gru import NetworkWeights
 from costeer.intention.kernel import TILE
+from costeer.intention.sparse import STRIDE, SparseState, SparseWeights, advance_few
 from costeer.intention.wavefront import (
     WavefrontState,
     WavefrontWeights,
@@ -39,13 +39,9 @@ from costeer.intention.wavefront import (
 GATE = 0.05
 """Watcher's probability from which exact windows are opened [-]."""
 
-HOLD = 60
-"""Samples that they stay open after it [-]."""
-
 _NUM_SEEN = 0
 _FIRST = 1
 _NEXT = 2
-_OPEN = 3
 
 
 class CascadeWeights(NamedTuple):
@@ -53,15 +49,15 @@ class CascadeWeights(NamedTuple):
 
     Attributes:
         exact: For the wavefront.
-        watcher: For the carried state.
+        watcher: For the approximate window.
         gate: Watcher's probability from which exact windows are opened [-].
-        hold: Samples that they stay open after it [-].
+        stride: Of the watcher; see sparse.py [-].
     """
 
     exact: WavefrontWeights
-    watcher: CarriedWeights
+    watcher: SparseWeights
     gate: float
-    hold: int
+    stride: int
 
 
 class CascadeState(NamedTuple):
@@ -69,21 +65,20 @@ class CascadeState(NamedTuple):
 
     Attributes:
         front: One tile of exact windows, and room for the inputs.
-        watcher: The carried state.
+        watcher: The approximate window.
         ring: Input's part of each row at the last samples, `(time, row)`.
         counters: Usable samples in a row; number of the sample at which the tile's
-            first window starts; number of the next sample that the tile takes; samples
-            for which the gate stays open; `(4,)`.
+            first window starts; number of the next sample that the tile takes; `(3,)`.
     """
 
     front: WavefrontState
-    watcher: CarriedState
+    watcher: SparseState
     ring: NDArray[np.float32]
     counters: NDArray[np.int64]
 
 
 def cascade_weights(
-    weights: NetworkWeights, gate: float = GATE, hold: int = HOLD
+    weights: NetworkWeights, gate: float = GATE, stride: int = STRIDE
 ) -> CascadeWeights:
     """Pack a network.
 
@@ -91,21 +86,21 @@ def cascade_weights(
         weights: Of the network.
         gate: Watcher's probability from which exact windows are opened; with 0 they
             always are [-].
-        hold: Samples that they stay open after it [-].
+        stride: Samples from one start of the watcher to the next [-].
 
     Raises:
-        ValueError: If the gate is above 0.5, where verdicts would be the watcher's, or
-            a value is negative.
+        ValueError: If the gate is above 0.5, where triggers would be the watcher's, or
+            the stride is too small for the watcher.
     """
     if not 0.0 <= gate <= 0.5:
         raise ValueError(f"gate is {gate}; give a probability from 0 to 0.5")
-    if hold < 0:
-        raise ValueError(f"hold is {hold} samples; give 0 or more")
+    if stride < STRIDE:
+        raise ValueError(f"stride is {stride} samples; give {STRIDE} or more")
     return CascadeWeights(
         exact=wavefront.wavefront_weights(weights),
-        watcher=carried.carried_weights(weights),
+        watcher=sparse.sparse_weights(weights),
         gate=float(gate),
-        hold=hold,
+        stride=stride,
     )
 
 
@@ -123,9 +118,9 @@ def initial_state(
     """
     state = CascadeState(
         front=wavefront.initial_state(weights.exact, absent, num_lanes=TILE),
-        watcher=carried.initial_state(weights.watcher),
+        watcher=sparse.initial_state(weights.watcher),
         ring=np.zeros((WINDOW_LENGTH, weights.exact.bias.size), np.float32),
-        counters=np.zeros(4, np.int64),
+        counters=np.zeros(3, np.int64),
     )
     reset(state)
     return state
@@ -134,19 +129,8 @@ def initial_state(
 @compiled
 def reset(state: CascadeState) -> None:
     """Forget all samples."""
-    state.watcher.hidden[:] = 0.0
     state.counters[:] = 0
     state.counters[_FIRST] = -WINDOW_LENGTH
-
-
-@compiled
-def _is_open(counters: NDArray[np.int64], stirs: bool, hold: int) -> bool:
-    """Whether the watcher stirs, or did within the hold."""
-    if stirs:
-        counters[_OPEN] = hold + 1
-    was_open = counters[_OPEN] > 0
-    counters[_OPEN] -= was_open
-    return was_open
 
 
 @compiled
@@ -175,16 +159,16 @@ def _exact(weights: CascadeWeights, state: CascadeState, newest: int) -> float:
 
 @compiled
 def _advance_taken(weights: CascadeWeights, state: CascadeState) -> float:
-    """Verdict after the sample among the inputs."""
+    """Verdict after the sample among the inputs; NaN of the watcher stays NaN."""
     newest = state.counters[_NUM_SEEN]
     projection = state.ring[newest % WINDOW_LENGTH]
     project(weights.exact, state.front)
     projection[:] = state.front.projection
-    watched = carry_on(weights.watcher, state.watcher, projection)
+    watched = advance_few(
+        weights.watcher, state.watcher, projection, newest, weights.stride
+    )
     state.counters[_NUM_SEEN] += 1
-    if newest + 1 < WINDOW_LENGTH:
-        return math.nan
-    if _is_open(state.counters, watched >= weights.gate, weights.hold):
+    if watched >= weights.gate:
         return _exact(weights, state, newest)
     return watched
 
@@ -219,11 +203,11 @@ def _advance_over(
     for step in range(features.shape[0]):
         row = features[step]
         sample = IntentionSample(row[0], row[1], row[2], row[3], row[4], row[5])
-        probabilities[step] = math.nan
         if take(weights.exact, state.front, sample):
             probabilities[step] = _advance_taken(weights, state)
         else:
             reset(state)
+            probabilities[step] = math.nan
 
 
 def crossing_probabilities(
@@ -231,13 +215,16 @@ def crossing_probabilities(
     features: NDArray[np.float64],
     absent: tuple[str, ...] = (),
 ) -> NDArray[np.float64]:
-    """Verdict at every sample of one recording, as `wavefront.crossing_probabilities`.
+    """Verdict at every sample of one recording.
 
     Args:
         weights: Packed by `cascade_weights`.
         features: In the signals' units, facing right, NaN where missing, shape
             `(time, feature)`.
         absent: Signals that the recording does not have.
+
+    Returns:
+        As `advance` gives them, shape `(time,)`.
 
     Raises:
         ValueError: If the last axis does not hold the six signals, or the network

@@ -254,6 +254,17 @@ def _difference(
     return Difference(value, low, high, verdict)
 
 
+def excluded_told(comparison: Comparison) -> list[str]:
+    """A sentence for each reason why predictors are not in the table."""
+    reasons: dict[str, list[str]] = {}
+    for each in comparison.excluded:
+        reasons.setdefault(each.reason, []).append(each.title)
+    return [
+        f"Not in the table: {'; '.join(titles)}. Reason: {reason}."
+        for reason, titles in reasons.items()
+    ]
+
+
 def comparison_facts(comparison: Comparison) -> dict[str, Any]:
     """The comparison as plain numbers, lists and dictionaries for JSON."""
     found = {

@@ -1,0 +1,192 @@
+"""Cheaper forms of the exact window: their cost, and what they change.
+
+    python benchmarks/cheaper_windows.py                         # 320 km, find the gate
+    python benchmarks/cheaper_windows.py --drivers 1250 --seed 72001 --gates 0.05
+    python benchmarks/cheaper_windows.py --assisted
+    python benchmarks/cheaper_windows.py --cost-only   # a minute, on a quiet core
+
+Simulates trials of 8 km of drivers of its own, asks every form for a verdict at every
+sample, and prints what it costs, how far it is from the exact window and which triggers
+differ. Manual trials are those that networks are trained on, with other drivers: all
+suggested speeds, much wander, abandoned lane changes. A gate found with one seed is
+tested with another. Time is that of the thread, so other processes disturb it little.
+The cost at other hidden sizes is that of the same network with idle units added.
+"""
+
+from __future__ import annotations
+
+import argparse
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from costeer.bench.agreement import Agreement, agreement, joined, percentile
+from costeer.bench.machine import load, processor_name
+from costeer.bench.windows import GATES, WATCHER, Form, enlarged, forms
+from costeer.intention.features import FEATURES, SAMPLE_RATE
+from costeer.intention.gru import NetworkWeights, hidden_size
+from costeer.intention.weights import load_weights
+from costeer.loop.scenario import TrialSetup
+from costeer.loop.trial import simulate_trial
+from costeer.training.recordings import recordings_of
+from costeer.training.simulation import simulate_unseen
+
+SIZES = (8, 16, 24, 32, 64)
+BLOCK = 40
+FIRST = 200_001
+ROUNDS = 5
+WATCHED = (0.01, 0.02, 0.05, 0.1, 0.2)
+ASSISTED = ((1.0, 4.0), (1.0, 6.0), (1.0, 8.0), (0.4, 4.0), (0.4, 6.0), (0.4, 8.0))
+_VELOCITY = FEATURES.index("longitudinal_velocity")
+
+Floats = NDArray[np.float64]
+
+
+def assisted_features(number: int, seed: int, wanted: int) -> list[Floats]:
+    """Trials with guidance, the exact window in the loop; conditions in turn."""
+    found = []
+    for i in range(number, number + wanted):
+        strength, duration = ASSISTED[i % len(ASSISTED)]
+        setup = TrialSetup(
+            participant=FIRST + i,
+            seed=seed,
+            condition=f"{'strong' if strength == 1.0 else 'weak'}-{duration:g}s",
+            strength_factor=strength,
+            change_duration=duration,
+        )
+        found += [r.features for r in recordings_of(simulate_trial(setup), "trial")]
+    return found
+
+
+def blocks(drivers: int, seed: int, assisted: bool) -> Iterator[list[Floats]]:
+    """Features of trials, some at a time; each block has a seed of its own."""
+    for start in range(0, drivers, BLOCK):
+        wanted = min(BLOCK, drivers - start)
+        if assisted:
+            yield assisted_features(start, seed, wanted)
+        else:
+            own = simulate_unseen(wanted, seed + start // BLOCK)
+            yield [recording.features for recording in own]
+
+
+def timed(form: Form, features: Floats) -> tuple[Floats, float]:
+    """Verdicts and the seconds of the thread that they took."""
+    start = time.thread_time()
+    verdicts = form.run(features)
+    return verdicts, time.thread_time() - start
+
+
+def compare(known: list[Form], series: list[Floats]) -> list[Agreement]:
+    """Each form with the first, over one block."""
+    results: list[Agreement] = []
+    for features in series:
+        exact, seconds = timed(known[0], features)
+        found = [agreement(exact, exact, seconds, WATCHED)]
+        for form in known[1:]:
+            verdicts, seconds = timed(form, features)
+            found.append(agreement(exact, verdicts, seconds, WATCHED))
+        results = [joined(*p) for p in zip(results, found, strict=True)] or found
+    return results
+
+
+def kilometres(series: list[Floats]) -> float:
+    """Driven in these recordings [km]."""
+    return float(sum(s[:, _VELOCITY].sum() for s in series)) / SAMPLE_RATE / 1000.0
+
+
+def table(known: list[Form], results: list[Agreement], driven: float) -> None:
+    """Print the forms."""
+    print(
+        "| form | us a tick | largest difference | 99.9 % | verdicts that differ, ppm "
+        "| triggers missing, extra, shifted per 1000 km | samples that trigger "
+        "differently | lowest where the exact one triggers |\n|" + "---|" * 8
+    )
+    for form, found in zip(known, results, strict=True):
+        each = (found.missing, found.extra, found.shifted)
+        rates = ", ".join(f"{1000.0 * n / driven:.3g}" for n in each)
+        print(
+            f"| {form.name} | {1e6 * found.seconds / found.ticks:.2f} "
+            f"| {found.largest:.4f} | {percentile(found, 99.9):.4f} "
+            f"| {1e6 * found.verdicts / found.samples:.3g} | {rates} "
+            f"| {found.held} | {found.lowest:.4f} |"
+        )
+
+
+def watch_table(known: list[Form], results: list[Agreement]) -> None:
+    """Print how often the watcher is above gates."""
+    found = results[[form.name for form in known].index(WATCHER)]
+    shares = found.stirred / found.samples
+    told = ", ".join(
+        f"{g:g}: {100 * s:.1f} %" for g, s in zip(WATCHED, shares, strict=True)
+    )
+    print(f"\nshare of samples where the watcher is at least at a gate: {told}")
+
+
+def cost_table(weights: NetworkWeights, gate: float, features: Floats) -> None:
+    """Print the cost by hidden size, median of some rounds over one recording."""
+    sizes = [hidden_size(weights), *(h for h in SIZES if h > hidden_size(weights))]
+    names = [form.name for form in forms(weights, (gate,))]
+    print(
+        "\nus a tick by hidden units (the same network with idle units added)\n\n"
+        f"| form | {' | '.join(map(str, sizes))} |\n|" + "---|" * (len(sizes) + 1)
+    )
+    costs = [
+        _costs(forms(enlarged(weights, size), (gate,)), features) for size in sizes
+    ]
+    for name, row in zip(names, zip(*costs, strict=True), strict=True):
+        print(f"| {name} | {' | '.join(f'{value:.2f}' for value in row)} |")
+
+
+def _costs(known: list[Form], features: Floats) -> list[float]:
+    """Median microseconds a tick of each form."""
+    for form in known:
+        form.run(features[:400])
+    rounds = [[timed(form, features)[1] for form in known] for _ in range(ROUNDS)]
+    return [float(m) for m in 1e6 * np.median(rounds, axis=0) / len(features)]
+
+
+def run(options: argparse.Namespace, weights: NetworkWeights) -> None:
+    """Simulate, compare and print; after each block a line of progress."""
+    known = forms(weights, tuple(options.gates))
+    results: list[Agreement] = []
+    driven = 0.0
+    for series in blocks(options.drivers, options.seed, options.assisted):
+        found = compare(known, series)
+        results = [joined(*p) for p in zip(results, found, strict=True)] or found
+        driven += kilometres(series)
+        print(f"{driven:.0f} km", flush=True)
+    kind = "assisted" if options.assisted else "manual"
+    print(
+        f"\n{driven:.0f} {kind} km, {options.drivers} drivers, seed {options.seed}, "
+        f"{results[0].samples} verdicts\n"
+    )
+    table(known, results, driven)
+    watch_table(known, results)
+
+
+def main() -> None:
+    """Print the tables."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--drivers", type=int, default=BLOCK)
+    parser.add_argument("--seed", type=int, default=71001)
+    parser.add_argument("--gates", type=float, nargs="+", default=list(GATES))
+    parser.add_argument("--assisted", action="store_true")
+    parser.add_argument("--cost-only", action="store_true")
+    parser.add_argument("--weights", type=Path, default=None)
+    options = parser.parse_args()
+    network = load_weights(options.weights)
+    size = hidden_size(network.weights)
+    print(
+        f"{processor_name()}, load {load()}, network {network.hash[:12]}, {size} units"
+    )
+    if not options.cost_only:
+        run(options, network.weights)
+    features = simulate_unseen(1, options.seed)[0].features
+    cost_table(network.weights, options.gates[-1], features)
+
+
+if __name__ == "__main__":
+    main()

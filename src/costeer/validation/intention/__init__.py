@@ -1,0 +1,1 @@
+"""What intention predictors are worth: figures, tables and a page."""
