@@ -1,8 +1,9 @@
-"""Cheaper forms of the exact window: their cost, and what they change.
+r"""Cheaper forms of the exact window: their cost, and what they change.
 
     python benchmarks/cheaper_windows.py                         # 320 km, find the gate
-    python benchmarks/cheaper_windows.py --drivers 1250 --seed 72001 --gates 0.05
     python benchmarks/cheaper_windows.py --assisted
+    python benchmarks/cheaper_windows.py --drivers 1300 --seed 72001 --gates 0.05 \
+        --brief --jobs 2                                         # 10,000 km, an hour
     python benchmarks/cheaper_windows.py --cost-only   # a minute, on a quiet core
 
 Simulates trials of 8 km of drivers of its own, asks every form for a verdict at every
@@ -10,6 +11,7 @@ sample, and prints what it costs, how far it is from the exact window and which 
 differ. Manual trials are those that networks are trained on, with other drivers: all
 suggested speeds, much wander, abandoned lane changes. A gate found with one seed is
 tested with another. Time is that of the thread, so other processes disturb it little.
+`--brief` leaves out the strided windows that are no candidates for the watcher.
 The cost at other hidden sizes is that of the same network with idle units added.
 """
 
@@ -18,6 +20,8 @@ from __future__ import annotations
 import argparse
 import time
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -25,14 +29,12 @@ from numpy.typing import NDArray
 
 from costeer.bench.agreement import Agreement, agreement, joined, percentile
 from costeer.bench.machine import load, processor_name
-from costeer.bench.windows import GATES, WATCHER, Form, enlarged, forms
+from costeer.bench.windows import GATES, STRIDES, WATCHER, Form, enlarged, forms
 from costeer.intention.features import FEATURES, SAMPLE_RATE
 from costeer.intention.gru import NetworkWeights, hidden_size
 from costeer.intention.weights import load_weights
 from costeer.loop.scenario import TrialSetup
-from costeer.loop.trial import simulate_trial
-from costeer.training.recordings import recordings_of
-from costeer.training.simulation import simulate_unseen
+from costeer.training.simulation import simulate_setups, simulate_unseen
 
 SIZES = (8, 16, 24, 32, 64)
 BLOCK = 40
@@ -45,31 +47,29 @@ _VELOCITY = FEATURES.index("longitudinal_velocity")
 Floats = NDArray[np.float64]
 
 
-def assisted_features(number: int, seed: int, wanted: int) -> list[Floats]:
-    """Trials with guidance, the exact window in the loop; conditions in turn."""
-    found = []
-    for i in range(number, number + wanted):
-        strength, duration = ASSISTED[i % len(ASSISTED)]
-        setup = TrialSetup(
-            participant=FIRST + i,
-            seed=seed,
-            condition=f"{'strong' if strength == 1.0 else 'weak'}-{duration:g}s",
-            strength_factor=strength,
-            change_duration=duration,
-        )
-        found += [r.features for r in recordings_of(simulate_trial(setup), "trial")]
-    return found
+def assisted_setup(number: int, seed: int) -> TrialSetup:
+    """A trial with guidance, the exact window in the loop; conditions in turn."""
+    strength, duration = ASSISTED[number % len(ASSISTED)]
+    return TrialSetup(
+        participant=FIRST + number,
+        seed=seed,
+        condition=f"{'strong' if strength == 1.0 else 'weak'}-{duration:g}s",
+        strength_factor=strength,
+        change_duration=duration,
+    )
 
 
-def blocks(drivers: int, seed: int, assisted: bool) -> Iterator[list[Floats]]:
+def blocks(options: argparse.Namespace) -> Iterator[list[Floats]]:
     """Features of trials, some at a time; each block has a seed of its own."""
-    for start in range(0, drivers, BLOCK):
-        wanted = min(BLOCK, drivers - start)
-        if assisted:
-            yield assisted_features(start, seed, wanted)
+    for start in range(0, options.drivers, BLOCK):
+        wanted = min(BLOCK, options.drivers - start)
+        seed = options.seed + start // BLOCK
+        if options.assisted:
+            setups = [assisted_setup(start + i, seed) for i in range(wanted)]
+            own = simulate_setups(setups, options.jobs)
         else:
-            own = simulate_unseen(wanted, seed + start // BLOCK)
-            yield [recording.features for recording in own]
+            own = simulate_unseen(wanted, seed, options.jobs)
+        yield [recording.features for recording in own]
 
 
 def timed(form: Form, features: Floats) -> tuple[Floats, float]:
@@ -79,17 +79,21 @@ def timed(form: Form, features: Floats) -> tuple[Floats, float]:
     return verdicts, time.thread_time() - start
 
 
-def compare(known: list[Form], series: list[Floats]) -> list[Agreement]:
-    """Each form with the first, over one block."""
-    results: list[Agreement] = []
-    for features in series:
-        exact, seconds = timed(known[0], features)
-        found = [agreement(exact, exact, seconds, WATCHED)]
-        for form in known[1:]:
-            verdicts, seconds = timed(form, features)
-            found.append(agreement(exact, verdicts, seconds, WATCHED))
-        results = [joined(*p) for p in zip(results, found, strict=True)] or found
-    return results
+def compare(known: list[Form], features: Floats) -> list[Agreement]:
+    """Each form with the first, over one recording."""
+    exact, seconds = timed(known[0], features)
+    found = [agreement(exact, exact, seconds, WATCHED)]
+    for form in known[1:]:
+        verdicts, seconds = timed(form, features)
+        found.append(agreement(exact, verdicts, seconds, WATCHED))
+    return found
+
+
+def merged(results: list[Agreement], found: list[Agreement]) -> list[Agreement]:
+    """Results of all forms with those of more recordings."""
+    if not results:
+        return found
+    return [joined(one, more) for one, more in zip(results, found, strict=True)]
 
 
 def kilometres(series: list[Floats]) -> float:
@@ -150,12 +154,13 @@ def _costs(known: list[Form], features: Floats) -> list[float]:
 
 def run(options: argparse.Namespace, weights: NetworkWeights) -> None:
     """Simulate, compare and print; after each block a line of progress."""
-    known = forms(weights, tuple(options.gates))
+    known = forms(weights, tuple(options.gates), () if options.brief else STRIDES)
     results: list[Agreement] = []
     driven = 0.0
-    for series in blocks(options.drivers, options.seed, options.assisted):
-        found = compare(known, series)
-        results = [joined(*p) for p in zip(results, found, strict=True)] or found
+    for series in blocks(options):
+        with ThreadPoolExecutor(options.jobs) as pool:
+            for found in pool.map(partial(compare, known), series):
+                results = merged(results, found)
         driven += kilometres(series)
         print(f"{driven:.0f} km", flush=True)
     kind = "assisted" if options.assisted else "manual"
@@ -173,6 +178,8 @@ def main() -> None:
     parser.add_argument("--drivers", type=int, default=BLOCK)
     parser.add_argument("--seed", type=int, default=71001)
     parser.add_argument("--gates", type=float, nargs="+", default=list(GATES))
+    parser.add_argument("--jobs", type=int, default=1)
+    parser.add_argument("--brief", action="store_true")
     parser.add_argument("--assisted", action="store_true")
     parser.add_argument("--cost-only", action="store_true")
     parser.add_argument("--weights", type=Path, default=None)

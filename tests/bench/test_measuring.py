@@ -17,6 +17,7 @@ from costeer.bench.peers import COMPILED, PLAIN, drive, drive_compiled, measure_
 from costeer.bench.start import measure_start
 from costeer.bench.timing import FULL, Effort, Figure, Outcome, Skipped
 from costeer.bench.trials import measure_engines, measure_trials
+from costeer.bench.verdicts import SIZES
 from costeer.plant.parameters import CarParameters
 
 TINY = Effort(rounds=1, calls=100, length=150.0, batch=1)
@@ -43,10 +44,13 @@ def test_the_control_step_keeps_its_budget() -> None:
     assert p99.median < CONTROL_STEP_BUDGET
 
 
-def test_the_network_is_the_shipped_one() -> None:
-    inside, *calls = figures(measure_network(TINY))
-    assert "exact 180-sample window" in inside.remark
-    assert len(calls) == 3
+def test_the_network_is_measured_by_size_and_as_shipped() -> None:
+    groups = list(
+        dict.fromkeys(found.group for found in figures(measure_network(TINY)))
+    )
+    assert groups[0] == "limit of one core"
+    assert groups[1:-1] == [f"verdict, {size} units" for size in SIZES]
+    assert groups[-1].startswith("verdict, shipped, ")
 
 
 def test_a_damaged_network_is_a_named_line(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -54,9 +58,8 @@ def test_a_damaged_network_is_a_named_line(monkeypatch: pytest.MonkeyPatch) -> N
         raise ValueError("the shipped network was altered")
 
     monkeypatch.setattr("costeer.bench.control.shipped_network", damaged)
-    (skipped,) = measure_network(TINY)
-    assert isinstance(skipped, Skipped)
-    assert skipped.reason == "the shipped network was altered"
+    skipped = [f for f in measure_network(TINY) if isinstance(f, Skipped)]
+    assert [f.reason for f in skipped] == ["the shipped network was altered"]
 
 
 def test_trials_are_measured_with_and_without_the_network() -> None:

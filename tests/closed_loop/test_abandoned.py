@@ -67,12 +67,15 @@ def test_a_fickle_driver_steers_towards_the_line_and_back(participant: int) -> N
     assert lateral[begun:].max() > -0.3
 
 
-@pytest.mark.xfail(
-    strict=True,
-    reason="the path back lasts as long as a whole lane change: given up later than "
-    "0.31 of the way in time, it swings out beyond the line before it turns",
-)
-@pytest.mark.parametrize("participant", PARTICIPANTS)
-def test_a_fickle_driver_never_crosses_the_line(participant: int) -> None:
-    drove = columns(FICKLE._replace(participant=participant))
-    assert set(drove["lane"]) == {1}
+def test_few_fickle_drivers_swing_over_the_line_and_all_come_back() -> None:
+    times, begun = [], 0
+    for participant in PARTICIPANTS:
+        drove = columns(FICKLE._replace(participant=participant))
+        begun += sum(value != 0 for value, _, _ in stretches(drove["driver_intention"]))
+        there = stretches((drove["lane"] == 0).astype(np.int8))
+        times += [(last - first) * DT for out, first, last in there if out]
+    # Uniform up to 0.35 of the path's duration; from about 0.3 on the path back leads
+    # over the line, one in eight of 1,250 changes by 40 drivers. Of the 50 to 60 here
+    # more than a quarter would be seven standard deviations too many.
+    assert len(times) < 0.25 * begun
+    assert max(times, default=0.0) < 5.0

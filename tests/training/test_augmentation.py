@@ -31,7 +31,7 @@ ERRORS = [
     name
     for name in AugmentationParameters._fields
     if name.endswith(("_spread", "_error", "_noise", "_drift"))
-]
+] + ["sway", "no_acceleration"]
 
 
 def only(variant: str, **errors: float) -> AugmentationParameters:
@@ -53,6 +53,13 @@ def windows(num: int, length: int = 180, seed: int = 0) -> Windows:
     return (middle[:, None] + size[:, None] * waves).transpose(0, 2, 1)
 
 
+def at_the_same_speed(num: int, length: int) -> Windows:
+    """Windows whose speed and acceleration tell nothing apart."""
+    made = windows(num, length)
+    made[..., SPEED], made[..., ACCELERATION] = 20.0, 0.1
+    return made
+
+
 def shown(
     parameters: AugmentationParameters, given_windows: Windows, seed: int = 3
 ) -> Windows:
@@ -60,10 +67,16 @@ def shown(
 
 
 def variants_of(seen: Windows) -> list[str]:
-    """By the signals that are missing, throughout a window or not at all."""
+    """By the signals that are missing, throughout a window or not at all.
+
+    Of motion alone the acceleration may be missing too.
+    """
     missing = np.isnan(seen)
     assert (missing == missing[:, :1]).all()
     names = {absent: variant for variant, absent in VARIANTS.items()}
+    for variant in ("motion", "motion-without-place"):
+        lacking = {*VARIANTS[variant], "longitudinal_acceleration"}
+        names[tuple(name for name in FEATURES if name in lacking)] = variant
     return [
         names[tuple(name for name in FEATURES if row[PLACE[name]])]
         for row in missing[:, 0]
@@ -140,10 +153,11 @@ def test_a_window_in_a_mirror_is_shown_in_a_mirror(variant: str) -> None:
     )
 
 
-@pytest.mark.parametrize("variant", ["motion", "motion-without-place", "head"])
-def test_windows_keep_their_order_and_their_course(variant: str) -> None:
+def test_windows_keep_their_order() -> None:
     made = windows(80, length=60)
-    speed, own = (w[..., SPEED] for w in (shown(only(variant), made), made))
+    motion = shown(only("motion"), made)
+    np.testing.assert_array_equal(motion[..., DISTANCE], made[..., DISTANCE])
+    speed, own = (w[..., SPEED] for w in (shown(only("head"), made), made))
     # Scaled as a whole: ups and downs over the mean stay, and tell windows apart.
     np.testing.assert_allclose(
         speed / speed.mean(axis=1, keepdims=True),
@@ -157,23 +171,74 @@ def is_exact(seen: Windows, made: Windows) -> NDArray[np.bool_]:
     return np.asarray(((seen == made) | np.isnan(seen)).all(axis=(1, 2)))
 
 
-def test_of_windows_with_motion_alone_half_are_exact() -> None:
+def binomial(share: float, num: int) -> float:
+    """Four standard deviations of a share."""
+    return 4.0 * math.sqrt(share * (1.0 - share) / num)
+
+
+@pytest.mark.parametrize("variant", ["motion", "motion-without-place"])
+def test_of_windows_with_motion_alone_a_share_is_of_other_traffic(
+    variant: str,
+) -> None:
     made = windows(4000, length=6)
-    for variant in ("motion", "motion-without-place"):
-        exact = is_exact(shown(only(variant), made), made)
-        # Binomial: four standard deviations.
-        assert exact.mean() == pytest.approx(0.5, abs=4.0 * 0.5 / math.sqrt(4000))
+    for share in (0.0, 0.3, DEFAULTS.other_traffic):
+        seen = shown(only(variant, other_traffic=share), made)
+        changed = 1.0 - is_exact(seen, made).mean()
+        assert changed == pytest.approx(share, abs=binomial(share, 4000))
+
+
+@pytest.mark.parametrize("variant", ["motion", "motion-without-place"])
+def test_of_windows_with_motion_alone_a_share_lacks_the_acceleration(
+    variant: str,
+) -> None:
+    made = windows(4000, length=6)
+    for share in (0.0, DEFAULTS.no_acceleration):
+        seen = shown(only(variant, no_acceleration=share), made)
+        lacking = np.isnan(seen[..., ACCELERATION]).all(axis=1).mean()
+        assert lacking == pytest.approx(share, abs=binomial(share, 4000))
 
 
 def test_at_another_speed_the_lateral_velocity_is_the_same() -> None:
     made = windows(400)
     seen = shown(only("motion"), made)
     lateral, own = (w[..., SPEED] * np.tan(w[..., YAW]) for w in (seen, made))
-    # Tangent, its inverse and two products, of numbers below 1 m/s.
+    # Tangents, their inverses and products, of numbers below 1 m/s.
     np.testing.assert_allclose(lateral, own, rtol=0, atol=1e-12)
     assert not is_exact(seen, made).all()
-    np.testing.assert_array_equal(seen[..., DISTANCE], made[..., DISTANCE])
-    np.testing.assert_array_equal(seen[..., ACCELERATION], made[..., ACCELERATION])
+
+
+def test_speed_and_acceleration_of_other_traffic_are_of_one_other_window() -> None:
+    made = windows(60, length=60)
+    seen = shown(only("motion", other_traffic=1.0), made)
+    own, found = (w[..., ACCELERATION] for w in (made, seen))
+    donors = [int(np.flatnonzero((own == row).all(axis=1))[0]) for row in found]
+    assert sorted(donors) == list(range(60))
+    assert donors != list(range(60))
+    ratio = seen[..., SPEED] / made[donors][..., SPEED]
+    np.testing.assert_allclose(ratio, np.broadcast_to(ratio[:, :1], ratio.shape))
+
+
+def test_a_sway_moves_place_and_yaw_angle_together() -> None:
+    made = at_the_same_speed(2000, length=180)
+    made[..., DISTANCE], made[..., YAW] = 1.75, 0.0
+    errors = {"sway": 0.15, "sway_reach": 0.6, "other_traffic": 1.0}
+    seen = shown(only("motion", **errors), made)
+    distance = seen[..., DISTANCE]
+    approach = -seen[..., SPEED] * np.tan(seen[..., YAW])
+    # Central differences of a sway of 4 s and more: (π/2/60)²/6 of 0.15 m/s; below
+    # 1 m/s of speed the yaw angle would be another.
+    slope = (distance[:, 2:] - distance[:, :-2]) * 30.0
+    np.testing.assert_allclose(-slope, approach[:, 1:-1], rtol=0, atol=1e-4)
+    assert 0.1 < np.abs(approach).max() <= 0.15 * (1.0 + 1e-12)
+    assert np.abs(distance - 1.75).max() <= 0.6
+
+
+def test_a_sway_reaches_no_farther_than_it_says() -> None:
+    made = at_the_same_speed(2000, length=180)
+    made[..., DISTANCE], made[..., YAW] = 1.75, 0.0
+    seen = shown(only("motion", sway=3.0, sway_reach=0.2, other_traffic=1.0), made)
+    reach = np.abs(seen[..., DISTANCE] - 1.75).max()
+    assert 0.19 < reach <= 0.2 * (1.0 + 1e-12)
 
 
 @pytest.mark.parametrize("variant", ["motion", "head"])
@@ -218,8 +283,7 @@ def test_noise_has_its_deviation_and_runs_straight_between_its_knots(
     variant: str, error: str, column: int, rate: int
 ) -> None:
     step = 60 // rate
-    made, largest = windows(4000, length=2 * step + 1), 0.04
-    made[..., SPEED] = 20.0
+    made, largest = at_the_same_speed(4000, length=2 * step + 1), 0.04
     same_speed = only(variant)._replace(slowest=20.0, fastest=20.0)
     parameters = same_speed._replace(**{error: largest})
     noise = shown(parameters, made)[..., column] - made[..., column]
@@ -251,8 +315,7 @@ def test_noise_has_its_deviation_and_runs_straight_between_its_knots(
 def test_a_constant_error_has_its_deviation(
     variant: str, error: str, column: int
 ) -> None:
-    made = windows(4000, length=12)
-    made[..., SPEED] = 20.0
+    made = at_the_same_speed(4000, length=12)
     same_speed = only(variant)._replace(slowest=20.0, fastest=20.0)
     seen = shown(same_speed._replace(**{error: 0.02}), made)
     off = (seen - made)[~is_exact(seen, made), :, column]
@@ -264,8 +327,7 @@ def test_a_constant_error_has_its_deviation(
 
 
 def test_a_larger_motion_is_larger_in_place_and_yaw_alike() -> None:
-    made = windows(4000, length=12)
-    made[..., SPEED] = 20.0
+    made = at_the_same_speed(4000, length=12)
     made[..., DISTANCE] = 1.0
     parameters = only("motion", size_spread=0.12)
     seen = shown(parameters._replace(slowest=20.0, fastest=20.0), made)

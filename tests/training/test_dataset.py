@@ -19,7 +19,7 @@ from costeer.intention.features import (
     approach_series,
     full_windows,
 )
-from costeer.training.augmentation import ALL_SIGNALS, AugmentationParameters
+from costeer.training.augmentation import ALL_SIGNALS
 from costeer.training.dataset import (
     DatasetParameters,
     batches,
@@ -228,7 +228,7 @@ def test_a_batch_holds_windows_as_the_network_takes_them() -> None:
 def test_batches_show_the_variants_that_are_asked_for() -> None:
     recordings = drives(3)
     data, scale = windows(recordings, PARAMETERS), scaling(recordings, np.ones(6))
-    motion = AugmentationParameters(*(0.0,) * 6)._replace(motion=1.0)
+    motion = ALL_SIGNALS._replace(full=0.0, motion=1.0, no_acceleration=0.0)
     batch = next(batches(data, scale, 40, seed=1, augmentation=motion))
     flags = batch.inputs[..., NUM_SCALED:]
     absent = [float(name in VARIANTS["motion"]) for name in FEATURES]

@@ -15,11 +15,6 @@ from costeer.loop.record import TrialRecord
 from costeer.training.recordings import read_recordings, recording, recordings_of
 from tests.training.synthetic import columns, drive
 
-UNSEEN = pytest.mark.xfail(
-    strict=True,
-    reason="with a column of crossings a lane that cannot be passes for a wider road",
-)
-
 
 def changed(**replaced: Any) -> dict[str, Any]:
     """A drive with some columns replaced, or left out if None."""
@@ -138,8 +133,8 @@ def test_without_sequence_and_participant_the_file_is_the_driver() -> None:
 @pytest.mark.parametrize(
     ("column", "value", "said"),
     [
-        pytest.param("lane", 0.5, "a: lane is 0.5 in row 7; give whole", marks=UNSEEN),
-        pytest.param("lane", -1, "a: lane is -1 in row 7; give whole", marks=UNSEEN),
+        ("lane", 0.5, "a: lane is 0.5 in row 7; give whole"),
+        ("lane", -1, "a: lane is -1 in row 7; give whole"),
         ("adjacent_side", 0, "a: adjacent_side is 0 in row 7; give -1 (right) or +1"),
         ("crossing", 3, "a: crossing is 3 in row 7; give -1 (right), 0 or +1 (left)"),
         ("crossing", np.nan, "a: crossing is nan in row 7; give -1 (right), 0 or"),

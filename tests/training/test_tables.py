@@ -17,11 +17,8 @@ from costeer.training.tables import (
     absent_signals,
     measured_side,
     resampled,
-    variant_of,
 )
 from tests.training.synthetic import columns
-
-MOTION = ("head_yaw", "steering_wheel_angle")
 
 
 def changed(**replaced: Any) -> dict[str, Any]:
@@ -40,22 +37,15 @@ def from_table(**replaced: Any) -> list[Recording]:
 
 
 @pytest.mark.parametrize("name", [n for n in FEATURES if n != "longitudinal_velocity"])
-def test_a_signal_without_a_column_is_absent_and_named(name: str) -> None:
+def test_a_signal_without_a_column_is_absent(name: str) -> None:
     (made,) = from_table(**{name: None})
     assert made.absent == (name,)
-    assert any(f"no {name}: the network's variant" in note for note in made.notes)
+    assert np.isnan(made.features[:, FEATURES.index(name)]).all()
 
 
 def test_a_column_without_a_value_is_absent() -> None:
     nothing = np.full(len(columns(1)["time"]), np.nan)
     assert absent_signals(changed(head_yaw=nothing)) == ("head_yaw",)
-
-
-def test_the_matching_variant_is_named() -> None:
-    assert variant_of(()) == "full"
-    assert variant_of(MOTION) == "motion"
-    assert variant_of(MOTION[::-1]) == "motion"
-    assert variant_of(("yaw_angle",)) == "without yaw_angle"
 
 
 @pytest.mark.parametrize("name", ["time", "longitudinal_velocity"])

@@ -22,6 +22,7 @@ from costeer.base.entry import entry
 from costeer.bench.timing import Effort, Figure, figure, seconds_of
 from costeer.intention.kernel import LAYOUT, ROWS
 from costeer.intention.lanes import Floats, Lanes, fused
+from costeer.intention.wavefront import aligned
 
 Float32 = NDArray[np.float32]
 
@@ -130,7 +131,7 @@ def read_limit(size: int, rounds: int) -> NDArray[np.float64]:
     """
     sums = np.zeros((NUM_SUMS, LAYOUT.width), np.float32)
     steps = size // sums.nbytes
-    values = np.zeros(steps * sums.size, np.float32)
+    values = aligned(np.zeros(steps * sums.size, np.float32))
     again = max(_READ // values.nbytes, 1)
     run_reading(values, sums, steps, 1)
     times = seconds_of(lambda: run_reading(values, sums, steps, again), rounds)

@@ -115,7 +115,7 @@ def measure_verdict(
         ("study, 1 core", "s"): STUDY_SECONDS * SAMPLE_RATE * median,
     }
     figures = [
-        figure(group, what, unit, values, _remark(size, what, values))
+        figure(group, what, unit, values, _remark(size, what, unit, values))
         for (what, unit), values in numbers.items()
     ]
     return [*figures[:2], *_from_python(group, weights, effort), *figures[2:]]
@@ -139,7 +139,7 @@ def _from_python(group: str, weights: NetworkWeights, effort: Effort) -> list[Fi
     ]
 
 
-def _remark(size: int, what: str, values: NDArray[np.float64]) -> str:
+def _remark(size: int, what: str, unit: str, values: NDArray[np.float64]) -> str:
     """Whether a budget is kept."""
     budget = BUDGETS.get(what) if size == BUDGET_SIZE else None
     if what.startswith("study"):
@@ -147,4 +147,4 @@ def _remark(size: int, what: str, values: NDArray[np.float64]) -> str:
     if budget is None:
         return ""
     kept = "kept" if float(np.median(values)) < budget else "NOT kept"
-    return f"budget {budget:g}: {kept}"
+    return f"budget {budget:g} {unit}: {kept}"

@@ -60,15 +60,25 @@ class Form(NamedTuple):
     run: Callable[[Floats], Floats]
 
 
-def forms(weights: NetworkWeights, gates: tuple[float, ...] = GATES) -> list[Form]:
-    """The exact window first, then all cheaper forms."""
+def forms(
+    weights: NetworkWeights,
+    gates: tuple[float, ...] = GATES,
+    strides: tuple[int, ...] = STRIDES,
+) -> list[Form]:
+    """The exact window first, then the cheaper forms.
+
+    Args:
+        weights: The network.
+        gates: Of the cascades [-].
+        strides: Of strided windows in the layout of the wavefront [-].
+    """
     few = partial(few_probabilities, weights)
     return [
         Form(EXACT, partial(crossing_probabilities, weights)),
         Form(CARRIED, partial(few, stride=NEVER)),
         *(
             Form(f"start every {s} samples", partial(strided, weights, stride=s))
-            for s in STRIDES
+            for s in strides
         ),
         Form(WATCHER, partial(few, stride=sparse.STRIDE)),
         *(

@@ -14,6 +14,9 @@ if TYPE_CHECKING:
     from costeer.bench.timing import Effort, Figure, Outcome, Skipped
 
 
+_VERDICT = "verdict, "
+
+
 def bench(
     quick: Annotated[
         bool, typer.Option("--quick", help="Fewer rounds and shorter trials.")
@@ -96,7 +99,7 @@ def print_figures(figures: list[Figure]) -> None:
 
 def _is_verdict(found: Figure) -> bool:
     """Whether a figure belongs to the table of verdicts by hidden size."""
-    return found.group.startswith("verdict, ")
+    return found.group.startswith(_VERDICT)
 
 
 def _print_verdicts(figures: list[Figure]) -> None:
@@ -106,11 +109,12 @@ def _print_verdicts(figures: list[Figure]) -> None:
     names = list(dict.fromkeys(f"{found.name} [{found.unit}]" for found in figures))
     rows: dict[str, list[str]] = {}
     for found in figures:
-        rows.setdefault(found.group, [found.group]).append(_short(found.median))
+        name = found.group.removeprefix(_VERDICT)
+        rows.setdefault(name, [name]).append(_short(found.median))
     print_table(["exact window", *names], list(rows.values()))
     for found in figures:
         if found.remark:
-            typer.echo(f"{found.group}, {found.name}: {found.remark} {found.unit}")
+            typer.echo(f"{found.group}, {found.name}: {found.remark}")
 
 
 def _short(value: float) -> str:

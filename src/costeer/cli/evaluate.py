@@ -97,6 +97,12 @@ def evaluate(
         Path | None,
         typer.Option(help="With --dataset: folder of the sets; COSTEER_DATA."),
     ] = None,
+    resample: Annotated[
+        bool,
+        typer.Option(
+            "--resample", help="Bring tables of another rate to 60 Hz, a row late."
+        ),
+    ] = False,
     threshold: Annotated[
         float,
         typer.Option(help="Positive from this probability on.", callback=fraction()),
@@ -130,7 +136,7 @@ def evaluate(
     from costeer.cli import evaluation as parts
     from costeer.training.evaluate import DEFAULTS
 
-    source = parts.Source(files or [], simulate, seed, dataset, data)
+    source = parts.Source(files or [], simulate, seed, dataset, data, resample)
     parts.check_source(source)
     chosen = parts.Chosen(predictor, weights, compare, tuple(without or ()), ablations)
     parts.check_chosen(chosen)

@@ -26,6 +26,7 @@ class Source(NamedTuple):
         seed: Of the simulated drivers.
         dataset: Name of a set of real driving.
         data: Folder of the sets; None for that of COSTEER_DATA.
+        resample: Bring tables of another rate to 60 Hz.
     """
 
     files: list[Path]
@@ -33,6 +34,7 @@ class Source(NamedTuple):
     seed: int | None
     dataset: str | None
     data: Path | None
+    resample: bool = False
 
 
 class Chosen(NamedTuple):
@@ -99,6 +101,8 @@ def check_source(source: Source) -> None:
         raise ValueError("--seed is of simulated drivers; add --simulate N")
     if source.data is not None and source.dataset is None:
         raise ValueError("--data is the folder of --dataset; add --dataset NAME")
+    if source.resample and not source.files:
+        raise ValueError("--resample is for tables; name them")
 
 
 def check_chosen(chosen: Chosen) -> None:
@@ -139,7 +143,7 @@ def read_source(source: Source) -> list[Recording]:
         return read_dataset(source.dataset, folder)
     from costeer.training.recordings import read_recordings
 
-    return read_recordings(source.files)
+    return read_recordings(source.files, source.resample)
 
 
 def judge(

@@ -58,11 +58,13 @@ class DecisionParameters(NamedTuple):
             those with a glance [-]. Source: assumed.
         settling_time: Pause after a lane change before the next decision [s].
             Source: assumed.
-        abandoned_share: Share of decided lane changes that are given up before the
-            line, for another car that comes up, say [-]. Source: assumed, none;
-            drives to learn intention from have some.
+        abandoned_share: Share of decided lane changes that are given up on the way,
+            for another car that comes up, say [-]. Source: assumed, none; drives to
+            learn intention from have some.
         abandoned_latest: The latest moment of giving up, over the planned duration
-            [-]. Source: assumed, a fifth of the way to the other lane.
+            [-]. Source: assumed, a fifth of the way to the other lane; the path back
+            takes as long as a lane change, so who gives up so late still swings over
+            the line and comes back.
         abandoned_pause: From giving up until the next decision [s]. Source: assumed,
             the other car passes.
     """

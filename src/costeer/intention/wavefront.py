@@ -90,7 +90,7 @@ class WavefrontState(NamedTuple):
     counters: NDArray[np.int64]
 
 
-def _aligned(values: NDArray[np.float32]) -> NDArray[np.float32]:
+def aligned(values: NDArray[np.float32]) -> NDArray[np.float32]:
     """A copy that starts at a cache line, so that no vector straddles two."""
     raw = np.zeros(values.nbytes + _CACHE_LINE, np.uint8)
     start = -raw.ctypes.data % _CACHE_LINE
@@ -119,11 +119,11 @@ def wavefront_weights(weights: NetworkWeights) -> WavefrontWeights:
         feature_mean=weights.feature_mean.astype(np.float64),
         feature_scale=weights.feature_scale.astype(np.float64),
         dispensable=weights.dispensable > 0.5,
-        input_weights=_aligned(inputs.transpose(2, 1, 0).reshape(NUM_INPUTS, -1)),
-        bias=_aligned(bias.T.ravel()),
-        recurrent=_aligned(by_pair.transpose(0, 2, 1)),
-        candidate_bias=_aligned(hidden_bias[2]),
-        output_weights=_aligned(_padded(weights.output_weights, 0)),
+        input_weights=aligned(inputs.transpose(2, 1, 0).reshape(NUM_INPUTS, -1)),
+        bias=aligned(bias.T.ravel()),
+        recurrent=aligned(by_pair.transpose(0, 2, 1)),
+        candidate_bias=aligned(hidden_bias[2]),
+        output_weights=aligned(_padded(weights.output_weights, 0)),
         output_bias=weights.output_bias.astype(np.float32),
     )
 
@@ -149,9 +149,9 @@ def initial_state(
     missing = np.array([name in absent for name in FEATURES])
     without(weights.dispensable, absent)
     return WavefrontState(
-        hidden=_aligned(np.zeros((num_tiles, hidden, TILE), np.float32)),
-        new_hidden=_aligned(np.zeros((hidden, TILE), np.float32)),
-        projection=_aligned(np.zeros(3 * hidden, np.float32)),
+        hidden=aligned(np.zeros((num_tiles, hidden, TILE), np.float32)),
+        new_hidden=aligned(np.zeros((hidden, TILE), np.float32)),
+        projection=aligned(np.zeros(3 * hidden, np.float32)),
         inputs=np.zeros(NUM_INPUTS, np.float32),
         absent=missing,
         counters=np.zeros(2, np.int64),

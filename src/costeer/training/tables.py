@@ -19,7 +19,6 @@ from costeer.intention.features import (
     ADJACENT_RIGHT,
     FEATURES,
     SAMPLE_RATE,
-    VARIANTS,
     WINDOW_LENGTH,
     adjacent_side,
 )
@@ -83,14 +82,16 @@ def crossings_of(name: str, columns: Columns) -> NDArray[np.int8]:
     """Side of each crossing at the first sample in the new lane, else 0.
 
     Raises:
-        ValueError: If the table does not tell when lanes are crossed.
+        ValueError: If the table does not tell when lanes are crossed, or a lane cannot
+            be.
     """
+    from_lanes = crossings(lanes(name, columns)) if "lane" in columns else None
     if "crossing" in columns:
         return whole(
             name, columns, "crossing", (-1, 0, 1), "-1 (right), 0 or +1 (left)"
         )
-    if "lane" in columns:
-        return crossings(lanes(name, columns))
+    if from_lanes is not None:
+        return from_lanes
     raise ValueError(
         f"{name} has no column crossing and no column lane; one of them must tell when "
         "the car crosses: -1 (right) or +1 (left) at the first row in the new lane, "
@@ -172,32 +173,16 @@ def whole(
 
 
 def remarks(name: str, columns: Columns) -> list[str]:
-    """What a reader should know of a whole table: signals and columns it lacks."""
+    """What a reader should know of a whole table: odd columns, sides, gaps."""
     return [
         f"{name}: {words}"
         for words in (
-            _missing(columns),
             _unknown(columns),
             _sides(columns),
             *_gaps(columns),
         )
         if words
     ]
-
-
-def variant_of(absent: tuple[str, ...]) -> str:
-    """Name of the variant that lacks exactly these signals, or what it lacks."""
-    known = {frozenset(lacked): name for name, lacked in VARIANTS.items()}
-    return known.get(frozenset(absent), "without " + ", ".join(absent))
-
-
-def _missing(columns: Columns) -> str:
-    absent = absent_signals(columns)
-    if not absent:
-        return ""
-    return (
-        f"no {', '.join(absent)}: the network's variant '{variant_of(absent)}' is used"
-    )
 
 
 def _unknown(columns: Columns) -> str:

@@ -46,14 +46,19 @@ def asked(
 def by_driver(
     recordings: Sequence[Recording], probabilities: Sequence[NDArray[np.float64]]
 ) -> list[DriverVerdicts]:
-    """Recordings and what was said of them, by driver in order of name."""
+    """Recordings and what was said of them, by driver in order of name.
+
+    What was said where the answer is not known, near the end of a recording, is left
+    out: a trigger there is neither true nor false.
+    """
     grouped: dict[str, DriverVerdicts] = {
         name: DriverVerdicts(name, [], [])
         for name in sorted({r.driver for r in recordings})
     }
     for recording, said in zip(recordings, probabilities, strict=True):
         grouped[recording.driver].recordings.append(recording)
-        grouped[recording.driver].probabilities.append(said)
+        judged = np.where(recording.labels.known, said, np.nan)
+        grouped[recording.driver].probabilities.append(judged)
     return list(grouped.values())
 
 

@@ -20,6 +20,7 @@ from costeer.intention.gru import NetworkWeights
 from costeer.intention.predictors.gru import our_probabilities
 from costeer.intention.predictors.interface import Probabilities
 from costeer.intention.predictors.registry import fitted_predictor, predictor
+from costeer.training.ablation import variant_of
 from costeer.training.comparison import (
     Comparison,
     Contender,
@@ -32,7 +33,6 @@ from costeer.training.predictors.logistic import DEFAULTS as LOGISTIC
 from costeer.training.predictors.logistic import fit_logistic
 from costeer.training.predictors.samples import feature_scaling, summary_table
 from costeer.training.recordings import Recording
-from costeer.training.tables import variant_of
 from costeer.training.tuning import DEFAULTS as TUNING
 from costeer.training.tuning import fine_tuned
 from costeer.training.verdicts import asked
@@ -110,7 +110,8 @@ def _logistic(recordings: list[Recording]) -> Probabilities:
     dataset = DatasetParameters()
     scaling = feature_scaling(recordings)
     (training, choosing), *_ = folds(recordings, NUM_FOLDS, 0)
-    variants = (variant_of(recordings[0].absent),)
+    matching = variant_of(recordings[0].absent)
+    variants = () if matching is None else (matching,)
     fitted = fit_logistic(
         summary_table(training, scaling, dataset),
         summary_table(choosing, scaling, dataset),
