@@ -2,7 +2,7 @@ r"""Cheaper forms of the exact window: their cost, and what they change.
 
     python benchmarks/cheaper_windows.py                         # 320 km, find the gate
     python benchmarks/cheaper_windows.py --assisted
-    python benchmarks/cheaper_windows.py --drivers 1300 --seed 72001 --gates 0.05 \
+    python benchmarks/cheaper_windows.py --drivers 1260 --seed 72001 --gates 0.02 \
         --brief --jobs 2                                         # 10,000 km, an hour
     python benchmarks/cheaper_windows.py --cost-only   # a minute, on a quiet core
 
@@ -79,6 +79,12 @@ def timed(form: Form, features: Floats) -> tuple[Floats, float]:
     return verdicts, time.thread_time() - start
 
 
+def warm_up(known: list[Form]) -> None:
+    """Let everything be compiled before it is timed."""
+    for form in known:
+        form.run(np.zeros((400, len(FEATURES))))
+
+
 def compare(known: list[Form], features: Floats) -> list[Agreement]:
     """Each form with the first, over one recording."""
     exact, seconds = timed(known[0], features)
@@ -146,8 +152,7 @@ def cost_table(weights: NetworkWeights, gate: float, features: Floats) -> None:
 
 def _costs(known: list[Form], features: Floats) -> list[float]:
     """Median microseconds a tick of each form."""
-    for form in known:
-        form.run(features[:400])
+    warm_up(known)
     rounds = [[timed(form, features)[1] for form in known] for _ in range(ROUNDS)]
     return [float(m) for m in 1e6 * np.median(rounds, axis=0) / len(features)]
 
@@ -155,6 +160,7 @@ def _costs(known: list[Form], features: Floats) -> list[float]:
 def run(options: argparse.Namespace, weights: NetworkWeights) -> None:
     """Simulate, compare and print; after each block a line of progress."""
     known = forms(weights, tuple(options.gates), () if options.brief else STRIDES)
+    warm_up(known)
     results: list[Agreement] = []
     driven = 0.0
     for series in blocks(options):
@@ -162,7 +168,8 @@ def run(options: argparse.Namespace, weights: NetworkWeights) -> None:
             for found in pool.map(partial(compare, known), series):
                 results = merged(results, found)
         driven += kilometres(series)
-        print(f"{driven:.0f} km", flush=True)
+        told = [f"{f.name} {r.held}" for f, r in zip(known, results, strict=True)]
+        print(f"{driven:.0f} km; trigger differs: {', '.join(told[1:])}", flush=True)
     kind = "assisted" if options.assisted else "manual"
     print(
         f"\n{driven:.0f} {kind} km, {options.drivers} drivers, seed {options.seed}, "

@@ -5,7 +5,7 @@
 Prints the machine, what one core of it can do at most, and for each hidden size and the
 shipped network: p50 and p99 of single verdicts called by compiled code and from Python,
 operations, bytes, their ratio, the share of the limit, and the network time of a whole
-study (34,500 s of driving) on one core. Then the same window in ONNX Runtime (one
+study (34,500 s of driving) on all cores. Then the same window in ONNX Runtime (one
 thread), where that is installed. docs/bench.md says how all is counted.
 """
 

@@ -103,7 +103,7 @@ def test_a_missing_input_is_named_with_the_variant_that_speaks(
     source = table(tmp_path / "d.csv", without="head_yaw")
     assert main(["evaluate", str(source), "--weights", str(weights)]) == 0
     (note,) = capsys.readouterr().err.splitlines()
-    assert "no head_yaw" in note
+    assert "lack head_yaw" in note
     assert "variant 'no-head'" in note
 
 
@@ -163,3 +163,31 @@ def test_impossible_numbers_are_refused(
 ) -> None:
     assert main(["train", *option]) == 2
     assert option[1] in refusal(capsys)
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (("--dataset", "ngsim_lc"), "--dataset and --data go together"),
+        (("--data", "data"), "nothing to learn from"),
+        (("--fit", "everything", "--simulate", "3"), "everything"),
+        (("--fit", "baselines", "--simulate", "3", "--hidden", "8"), "--hidden"),
+        (("--start", "w.npz", "--simulate", "3", "--hidden", "8"), "--hidden"),
+        (("--dataset", "no", "--data", "."), "there is no set 'no'"),
+    ],
+)
+def test_options_that_do_not_go_together_are_told(
+    words: tuple[str, ...], said: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["train", *words]) == 2
+    assert said in refusal(capsys)
+
+
+def test_a_network_goes_on_learning_from_a_table(weights: Path, tmp_path: Path) -> None:
+    source, out = table(tmp_path / "d.csv"), tmp_path / "tuned.npz"
+    words = ["train", str(source), "--start", str(weights), "--out", str(out)]
+    assert main([*words, "--steps", "2"]) == 0
+    tuned, start = load_weights(out), load_weights(weights)
+    assert tuned.facts["start"]["hash"] == start.hash
+    assert tuned.hash != start.hash
+    assert tuned.facts["drivers"]["training"] == ["0", "1", "2"]

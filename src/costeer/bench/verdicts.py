@@ -24,6 +24,7 @@ from costeer.bench.timing import (
 from costeer.intention.features import NUM_FEATURES, SAMPLE_RATE, IntentionSample
 from costeer.intention.gru import NetworkWeights, hidden_size
 from costeer.intention.wavefront import advance, initial_state, wavefront_weights
+from costeer.study.jobs import default_jobs
 
 SIZES = (8, 16, 24, 32, 48, 64)
 
@@ -112,7 +113,10 @@ def measure_verdict(
         ("intensity", "FLOP/B"): np.array([intensity(cost)]),
         ("rate", "GFLOP/s"): work / median / 1e9,
         ("share of limit", "%"): 100.0 * work / median / limit,
-        ("study, 1 core", "s"): STUDY_SECONDS * SAMPLE_RATE * median,
+        ("study, all cores", "s"): STUDY_SECONDS
+        * SAMPLE_RATE
+        * median
+        / default_jobs(),
     }
     figures = [
         figure(group, what, unit, values, _remark(size, what, unit, values))

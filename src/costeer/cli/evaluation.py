@@ -164,13 +164,12 @@ def judge(
     from costeer.training.recordings import lacking
 
     seen = [lacking(one, chosen.without) for one in recordings]
-    if chosen.without or source.dataset:
-        # Notes on files tell by themselves which signals their columns lack.
-        for line in variants_told(seen):
-            note(line)
+    lacks = missing_signals(seen)
+    for line in variants_told(lacks, len(seen)):
+        note(line)
     judged = predictor(chosen.predictor, chosen.weights)
     assessment = assess(judged, seen, _asked(chosen), parameters)
-    facts = assessment_facts(assessment)
+    facts = {"missing_signals": lacks, **assessment_facts(assessment)}
     if chosen.predictor != OURS:
         return Result(judged.title, _told(source), facts, assessment, {})
     network = load_weights(chosen.weights)
@@ -202,24 +201,28 @@ def _told(source: Source) -> str:
     return "files " + ", ".join(file.name for file in source.files)
 
 
-def variants_told(recordings: Sequence[Recording]) -> Iterator[str]:
-    """Which signals recordings lack, and which variant of the network speaks then."""
+def missing_signals(recordings: Sequence[Recording]) -> list[dict[str, Any]]:
+    """Which signals recordings lack, how many do, and the variant that speaks then."""
     from costeer.training.ablation import variant_of
 
     kinds = Counter(one.absent for one in recordings)
-    for absent, number in kinds.items():
-        if not absent:
-            continue
-        name = variant_of(absent)
+    return [
+        {"missing": list(absent), "recordings": number, "variant": variant_of(absent)}
+        for absent, number in kinds.items()
+        if absent
+    ]
+
+
+def variants_told(lacks: Sequence[dict[str, Any]], total: int) -> Iterator[str]:
+    """The same in words, of `total` recordings."""
+    for each in lacks:
         spoken = (
-            f"the variant '{name}' of the network speaks"
-            if name
+            f"the variant '{each['variant']}' of the network speaks"
+            if each["variant"]
             else "the network was not trained to lack just these: trust it less"
         )
-        yield (
-            f"note: {number} of {len(recordings)} recordings lack "
-            f"{', '.join(absent)}; {spoken}"
-        )
+        names = ", ".join(each["missing"])
+        yield f"note: {each['recordings']} of {total} recordings lack {names}; {spoken}"
 
 
 def print_comparisons(result: Result) -> None:

@@ -185,6 +185,11 @@ def _check(weights: NetworkWeights, source: str) -> None:
             )
         if not np.isfinite(values).all():
             raise ValueError(f"{name} of {source} holds values that are not finite")
+    if not np.isin(weights.dispensable, (0.0, 1.0)).all():
+        raise ValueError(
+            f"dispensable of {source} is {weights.dispensable.tolist()}; it is 0 or 1 "
+            "for each signal"
+        )
     if (weights.feature_scale <= 0).any():
         raise ValueError(
             f"feature_scale of {source} is {weights.feature_scale.tolist()}; "

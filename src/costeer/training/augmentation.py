@@ -131,6 +131,9 @@ def dispensable(parameters: AugmentationParameters) -> NDArray[np.float64]:
         for name in absent
         if share > 0.0
     }
+    motion = parameters.motion + parameters.motion_without_place
+    if motion > 0.0 and parameters.no_acceleration > 0.0:
+        lacked.add(FEATURES[_ACCELERATION])
     return np.array([float(name in lacked) for name in FEATURES])
 
 

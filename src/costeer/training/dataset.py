@@ -124,7 +124,10 @@ def split_by_driver(
 def interesting(
     recording: Recording, parameters: DatasetParameters
 ) -> NDArray[np.bool_]:
-    """Samples where quiet driving ends: glances, drifts, around lane changes."""
+    """Samples where quiet driving ends: glances, drifts, around lane changes.
+
+    Lane changes are those that the driver meant, in a run those to its side.
+    """
     reach = round(parameters.around_crossing * 60.0)
     crossed = np.flatnonzero(recording.intended)
     here = np.arange(len(recording.intended))
@@ -138,9 +141,12 @@ def interesting(
 
 
 def shown(recordings: Sequence[Recording]) -> list[Recording]:
-    """Recordings as they are and, where they have all signals, on a wider road."""
-    wider = [v for r in recordings if not r.absent for v in wide_views(r)]
-    return [*recordings, *wider]
+    """Recordings as they are and, where they have all signals, on a wider road.
+
+    A run that looks to one side all the time is of such a road already.
+    """
+    whole = [r for r in recordings if not r.absent and len(np.unique(r.side)) > 1]
+    return [*recordings, *(view for r in whole for view in wide_views(r))]
 
 
 def windows(recordings: Sequence[Recording], parameters: DatasetParameters) -> Windows:
