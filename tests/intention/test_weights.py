@@ -70,6 +70,7 @@ def altered(**changes: np.ndarray) -> NetworkWeights:
         (altered(input_bias=np.full((3, 8), np.nan)), "not finite"),
         (altered(feature_mean=np.zeros(6)), "feature_mean.*(6,), expected (7,)"),
         (altered(feature_scale=np.zeros(7)), "positive"),
+        (altered(dispensable=np.full(6, 0.5)), "0 or 1"),
         (altered(dispensable=np.ones(7)), "dispensable.*(7,), expected (6,)"),
         (altered(dispensable=np.full(6, np.nan)), "dispensable.*not finite"),
     ],

@@ -7,6 +7,7 @@ import pytest
 from numpy.typing import NDArray
 
 from costeer.training.labels import labels
+from costeer.training.operating import operating_counts
 from costeer.training.recordings import Recording
 from costeer.training.triggers import (
     TriggerParameters,
@@ -15,6 +16,7 @@ from costeer.training.triggers import (
     total,
     trigger_scores,
 )
+from costeer.training.verdicts import DriverVerdicts
 
 LENGTH = 1800
 PARAMETERS = TriggerParameters()
@@ -104,6 +106,18 @@ def test_a_crossing_to_the_other_side_makes_a_trigger_false() -> None:
 
 def test_a_crossing_before_any_verdict_is_not_missed() -> None:
     assert judge(stretch(100), verdicts(), PARAMETERS).leads == ()
+
+
+def test_a_trigger_before_a_crossing_without_a_verdict_is_not_false() -> None:
+    said = verdicts((1078, 1150))
+    said[1150:1210] = np.nan  # the head was lost, say
+    counts = judge(stretch(1200), said, PARAMETERS)
+    assert (counts.true, counts.false, counts.leads) == (1, 0, ())
+    driver = DriverVerdicts("a", [stretch(1200), stretch(1200)], [said, verdicts()])
+    operating = operating_counts([driver], PARAMETERS, np.array([0.5]))
+    # The other drive has one missed crossing, and it keeps its lead of 0.
+    assert operating.false.sum() == 0
+    assert operating.leads.tolist() == [[0.0]]
 
 
 def test_rates_count_only_what_was_judged() -> None:

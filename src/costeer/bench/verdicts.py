@@ -39,6 +39,9 @@ STUDY_SECONDS = 34_500.0
 STUDY_BUDGET = 30.0
 """Network time of the whole study [s]."""
 
+SPARING = 10
+"""Calls of a round are divided by this, as seven networks are measured [-]."""
+
 _FRESH = 200
 
 
@@ -97,7 +100,7 @@ def measure_verdict(
         effort: Rounds, and calls in a round.
     """
     group = f"verdict, {name}"
-    calls = effort.calls // 4
+    calls = effort.calls // SPARING
     cost = verdict_cost(hidden_size(weights))
     work, size = float(operations(cost)), hidden_size(weights)
     try:
@@ -135,7 +138,7 @@ def _from_python(group: str, weights: NetworkWeights, effort: Effort) -> list[Fi
         group,
         "from Python",
         lambda: advance(packed, state, sample),
-        effort._replace(calls=effort.calls // 4),
+        effort._replace(calls=effort.calls // SPARING),
     )
     return [
         each._replace(name=f"{label} from Python")

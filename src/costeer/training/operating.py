@@ -110,7 +110,8 @@ def operating_counts(
         for counted, chosen in ((true, timely), (early, useful & ~timely)):
             counted[k] = np.bincount(driver[chosen], minlength=len(drivers))
         false[k] = np.bincount(driver[~useful], minlength=len(drivers))
-        np.maximum.at(leads[k], rises.target[rows[useful]], lead[useful])
+        found = useful & (rises.target[rows] >= 0)
+        np.maximum.at(leads[k], rises.target[rows[found]], lead[found])
     running = [[np.isfinite(p) for p in one.probabilities] for one in drivers]
     return OperatingCounts(
         thresholds=thresholds,
@@ -151,7 +152,9 @@ def _pieces(
                     low=before[rows],
                     high=level[rows],
                     lead=told.lead[rows],
-                    target=told.target[rows] + num_crossings,
+                    target=np.where(
+                        told.target[rows] < 0, -1, told.target[rows] + num_crossings
+                    ),
                     driver=np.full(len(rows), place),
                 )
             )

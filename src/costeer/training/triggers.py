@@ -65,8 +65,8 @@ class Announced(NamedTuple):
     Attributes:
         lead: Time until the next crossing to the side of the adjacent lane that the
             driver meant [s], infinite without one, `(time,)`.
-        target: Place of that crossing among those that are judged, -1 without one,
-            `(time,)`.
+        target: Place of that crossing among those that are judged, -1 if it is none of
+            them or there is none, `(time,)`.
         num_crossings: That are judged: with a verdict at the sample before.
     """
 
@@ -83,17 +83,19 @@ def announced(recording: Recording, running: NDArray[np.bool_]) -> Announced:
         running: Whether there is a verdict, `(time,)`.
     """
     crossed = np.flatnonzero(recording.intended)
-    crossed = crossed[running[np.maximum(crossed - 1, 0)]]
+    judged = running[np.maximum(crossed - 1, 0)]
+    place_among = np.where(judged, np.cumsum(judged) - 1, -1)
     here = np.arange(len(running))
     lead = np.full(len(running), np.inf)
     target = np.full(len(running), -1)
     for side in (-1, 1):
         own = np.flatnonzero(recording.intended[crossed] == side)
-        place = np.searchsorted(crossed[own], here, side="right")
-        rows = np.flatnonzero((recording.side == side) & (place < len(own)))
-        target[rows] = own[place[rows]]
-        lead[rows] = (crossed[target[rows]] - rows) / SAMPLE_RATE
-    return Announced(lead=lead, target=target, num_crossings=len(crossed))
+        following = np.searchsorted(crossed[own], here, side="right")
+        rows = np.flatnonzero((recording.side == side) & (following < len(own)))
+        next_one = own[following[rows]]
+        target[rows] = place_among[next_one]
+        lead[rows] = (crossed[next_one] - rows) / SAMPLE_RATE
+    return Announced(lead=lead, target=target, num_crossings=int(judged.sum()))
 
 
 def sustained(
@@ -147,7 +149,8 @@ def judge(
     useful = lead <= parameters.early_horizon
     true = int(np.sum(lead <= PREDICTION_HORIZON))
     leads = np.zeros(told.num_crossings)
-    np.maximum.at(leads, told.target[rows[useful]], lead[useful])
+    found = useful & (told.target[rows] >= 0)
+    np.maximum.at(leads, told.target[rows[found]], lead[found])
     return TriggerCounts(
         true=true,
         early=int(useful.sum()) - true,
