@@ -2,8 +2,8 @@ r"""Cheaper forms of the exact window: their cost, and what they change.
 
     python benchmarks/cheaper_windows.py                         # 320 km, find the gate
     python benchmarks/cheaper_windows.py --assisted
-    python benchmarks/cheaper_windows.py --drivers 1260 --seed 72001 --gates 0.02 \
-        --brief --jobs 2                                         # 10,000 km, an hour
+    python benchmarks/cheaper_windows.py --drivers 1260 --seed 75001 --gates 0.005 \
+        --brief --jobs 2                                         # 10,000 km
     python benchmarks/cheaper_windows.py --cost-only   # a minute, on a quiet core
 
 Simulates trials of 8 km of drivers of its own, asks every form for a verdict at every

@@ -65,8 +65,8 @@ class Effort(NamedTuple):
     batch: int
 
 
-FULL = Effort(rounds=5, calls=20_000, length=8000.0, batch=8)
-QUICK = Effort(rounds=2, calls=5_000, length=1500.0, batch=2)
+FULL = Effort(rounds=5, calls=20_000, length=8000.0, batch=3)
+QUICK = Effort(rounds=2, calls=5_000, length=1500.0, batch=1)
 
 
 def seconds_of(work: Callable[[], object], rounds: int) -> NDArray[np.float64]:

@@ -16,6 +16,7 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
+from costeer.intention.features import full_windows
 from costeer.intention.gru import NetworkWeights
 from costeer.intention.predictors.gru import our_probabilities
 from costeer.intention.predictors.interface import Probabilities
@@ -109,7 +110,7 @@ def _logistic(recordings: list[Recording]) -> Probabilities:
     """Logistic regression; a fourth of the drivers chooses its penalty."""
     dataset = DatasetParameters()
     scaling = feature_scaling(recordings)
-    (training, choosing), *_ = folds(recordings, NUM_FOLDS, 0)
+    training, choosing = _two_parts(recordings)
     matching = variant_of(recordings[0].absent)
     variants = () if matching is None else (matching,)
     fitted = fit_logistic(
@@ -119,3 +120,21 @@ def _logistic(recordings: list[Recording]) -> Probabilities:
         LOGISTIC._replace(variants=variants),
     )
     return fitted_predictor("logistic", fitted).probabilities
+
+
+def _two_parts(
+    recordings: list[Recording],
+) -> tuple[list[Recording], list[Recording]]:
+    """Drivers to fit and drivers to choose by, with lane changes in both."""
+    for training, choosing in folds(recordings, NUM_FOLDS, 0):
+        if _changes_lanes(training) and _changes_lanes(choosing):
+            return training, choosing
+    return recordings, recordings
+
+
+def _changes_lanes(recordings: Sequence[Recording]) -> bool:
+    """Whether some full window precedes a crossing."""
+    return any(
+        bool((full_windows(r.features, r.absent) & r.labels.positive)[::6].any())
+        for r in recordings
+    )
