@@ -7,10 +7,10 @@ at the next ones, as many as fill a tile of the kernel, are replayed together, a
 advanced with each new sample until the last of them has ended.
 
 So a verdict of at least 0.5 is always the exact one; what can differ is a verdict that
-the watcher put below the gate. That none does is neither proven nor tested on 10,000 km:
-docs/bench.md says what was seen. It is an option for long batches. On a real-time drive
-the exact wavefront is the better choice, because a replay takes 180 steps of a tile in
-one tick.
+the watcher put below the gate. That none does is neither proven nor tested on 10,000
+km: docs/bench.md says what was seen. It is an option for long batches. On a real-time
+drive the exact wavefront is the better choice, because a replay takes 180 steps of a
+tile in one tick.
 """
 
 from __future__ import annotations
