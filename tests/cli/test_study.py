@@ -167,4 +167,4 @@ def test_two_real_trials_are_the_same_in_any_number_of_jobs(tmp_path: Path) -> N
         assert main([*words, *QUICK, "400", "--intention", "scripted"]) == 0
     one, two = map(contents, folders)
     assert one == two
-    assert len(one) == 5
+    assert len(one) == 6
