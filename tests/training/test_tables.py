@@ -184,7 +184,7 @@ def test_resampled_distance_does_not_run_across_a_crossing() -> None:
 def test_a_table_of_10_hz_is_read_when_asked(tmp_path: Path) -> None:
     path = tmp_path / "slow.csv"
     pd.DataFrame(at_ten_hertz(changed())).to_csv(path, index=False)
-    with pytest.raises(ValueError, match="--resample"):
+    with pytest.raises(ValueError, match="resample"):
         read_recordings([path])
     (made,) = read_recordings([path], resample=True)
     assert np.count_nonzero(made.intended) == 4

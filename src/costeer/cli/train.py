@@ -29,6 +29,7 @@ class Source(NamedTuple):
         jobs: Threads to simulate with.
         dataset: Name of a set of real driving.
         data: Folder of the sets.
+        resample: Bring tables of another rate to 60 Hz.
     """
 
     files: list[Path]
@@ -37,6 +38,7 @@ class Source(NamedTuple):
     jobs: int
     dataset: str | None
     data: Path | None
+    resample: bool
 
 
 def train(
@@ -60,6 +62,12 @@ def train(
     data: Annotated[
         Path | None, typer.Option(help="With --dataset: folder of the sets.")
     ] = None,
+    resample: Annotated[
+        bool,
+        typer.Option(
+            "--resample", help="Bring tables of another rate to 60 Hz, a row late."
+        ),
+    ] = False,
     fit: Annotated[
         str,
         typer.Option(
@@ -101,9 +109,8 @@ def train(
         costeer train --simulate 60 --fit baselines --out out/baselines.npz
         costeer train drives.csv --start out/intention.npz --out out/tuned.npz
     """
-    source = Source(
-        files or [], simulate, seed, jobs or os.cpu_count() or 1, dataset, data
-    )
+    threads = jobs or os.cpu_count() or 1
+    source = Source(files or [], simulate, seed, threads, dataset, data, resample)
     _check_source(source, start is not None)
     _check_place(out)
     _check_together(fit, start, hidden, steps)
@@ -157,7 +164,7 @@ def _recordings(source: Source) -> list[Recording]:
     from costeer.training.recordings import read_recordings
     from costeer.training.simulation import simulate_recordings
 
-    found = read_recordings(source.files)
+    found = read_recordings(source.files, source.resample)
     if source.dataset is not None and source.data is not None:
         found += read_dataset(source.dataset, source.data)
     print_notes(found)

@@ -46,7 +46,8 @@ class AugmentationParameters(NamedTuple):
         motion_without_place: Share that lacks the distance too [-]. Source: assumed.
         head: Share with head yaw and speed only [-]. Source: assumed.
         other_traffic: Share of the windows with motion alone that are from another car
-            on another road; the others stay exact [-]. Source: assumed.
+            on another road; the others stay exact [-]. Source: chosen on the shared
+            halves of recordings of people (docs/decisions/0010-missing-signals.md).
         no_acceleration: Share of windows with motion alone that lack the acceleration
             too [-]. Source: assumed.
         slowest: Least speed of a window with motion alone [m/s]. Source: assumed, a
@@ -55,20 +56,20 @@ class AugmentationParameters(NamedTuple):
         size_spread: Standard deviation of the logarithm of the lateral motion's size
             [-]. Source: assumed, lanes of 3 to 4.2 m.
         sway: Largest lateral speed of a sway that has nothing to do with a lane change
-            [m/s]. Source: assumed; people in dense traffic sway more than virtual
-            drivers on an empty road.
+            [m/s]. Source: chosen as `other_traffic`; people in dense traffic sway more
+            than virtual drivers on an empty road.
         sway_reach: Largest way of that sway to each side [m]. Source: assumed.
         place_error: Constant error of the distance, standard deviation [m]. Source:
             assumed, a map or a camera.
         place_noise: Largest standard deviation of its noise at 10 Hz [m]. Source:
             assumed.
-        place_drift: The same of noise at 1 Hz [m]. Source: assumed, a map whose lines
-            do not run as the lanes do.
+        place_drift: The same of noise at 1 Hz [m]. Source: chosen as `other_traffic`,
+            a map whose lines do not run as the lanes do.
         yaw_error: Constant error of the yaw angle, standard deviation [rad]. Source:
             assumed, as above.
         yaw_noise: Largest standard deviation of its noise at 10 Hz [rad]. Source:
             assumed, cars tracked from afar.
-        yaw_drift: The same of noise at 1 Hz [rad]. Source: assumed.
+        yaw_drift: The same of noise at 1 Hz [rad]. Source: chosen as `other_traffic`.
         acceleration_noise: Largest standard deviation of the acceleration's noise
             [m/s²]. Source: assumed, as above.
         head_spread: Standard deviation of the logarithm of the head's size [-].

@@ -29,6 +29,7 @@ from costeer.training.network import (
     logits,
     network_weights,
 )
+from costeer.training.optimiser import optimiser
 from costeer.training.recordings import Recording, lacking
 from costeer.training.scaling import Scaling
 
@@ -107,21 +108,6 @@ def weighted_loss(
     """Log loss [nat], each window by its weight."""
     each = optax.sigmoid_binary_cross_entropy(logits(weights, windows), positive)
     return jnp.sum(weight * each) / jnp.sum(weight)
-
-
-def optimiser(parameters: FitParameters) -> optax.GradientTransformation:
-    """Adam with weight decay, a cut of large gradients and a falling rate."""
-    rate = optax.warmup_cosine_decay_schedule(
-        init_value=0.1 * parameters.learning_rate,
-        peak_value=parameters.learning_rate,
-        warmup_steps=min(100, parameters.num_steps // 10 + 1),
-        decay_steps=max(parameters.num_steps, 2),
-        end_value=0.01 * parameters.learning_rate,
-    )
-    return optax.chain(
-        optax.clip_by_global_norm(parameters.largest_gradient),
-        optax.adamw(rate, weight_decay=parameters.weight_decay),
-    )
 
 
 def descend(

@@ -213,7 +213,7 @@ def _check_rate(name: str, columns: Columns) -> None:
         raise ValueError(
             f"{name}: {steps[wrong[0]]:.6g} s lie between rows {wrong[0]} and "
             f"{wrong[0] + 1}; the network needs {SAMPLE_RATE:g} rows a second without "
-            "gaps: resample (costeer evaluate --resample), and mark separate stretches "
+            "gaps: resample (--resample), and mark separate stretches "
             "in the column 'sequence'"
         )
 

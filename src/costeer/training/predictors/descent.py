@@ -14,6 +14,8 @@ import numpy as np
 import optax
 from numpy.typing import NDArray
 
+from costeer.training.optimiser import optimiser
+
 Weights = TypeVar("Weights")
 Loss = Callable[..., jax.Array]
 
@@ -52,21 +54,6 @@ class Descent(NamedTuple):
 
     weights: Any  # Any: a tree of arrays
     curve: list[tuple[int, float]]
-
-
-def optimiser(parameters: DescentParameters) -> optax.GradientTransformation:
-    """Adam with weight decay, a cut of large gradients and a falling rate."""
-    rate = optax.warmup_cosine_decay_schedule(
-        init_value=0.1 * parameters.learning_rate,
-        peak_value=parameters.learning_rate,
-        warmup_steps=min(100, parameters.num_steps // 10 + 1),
-        decay_steps=max(parameters.num_steps, 2),
-        end_value=0.01 * parameters.learning_rate,
-    )
-    return optax.chain(
-        optax.clip_by_global_norm(parameters.largest_gradient),
-        optax.adamw(rate, weight_decay=parameters.weight_decay),
-    )
 
 
 def batch_rows(
