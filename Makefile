@@ -47,7 +47,8 @@ bench-env:
 
 lock: dev
 	$(COMPILE) requirements/installer.in -o requirements/installer.lock
-	$(COMPILE) $(BASE) --extra jax --extra train --extra dev -o requirements/dev.lock
+	$(COMPILE) $(BASE) --extra jax --extra train --extra drive --extra can --extra lsl \
+		--extra dev -o requirements/dev.lock
 	$(COMPILE) $(BASE) -c requirements/dev.lock -o requirements/base.lock
 	$(COMPILE) $(BASE) -c requirements/dev.lock --extra bench -o requirements/bench.lock
 	@! grep -nE 'https?://' requirements/*.lock
