@@ -40,10 +40,15 @@ def to_table(record: TrialRecord) -> pa.Table:
         ValueError: If a mode is unknown or the metadata does not fit into JSON.
     """
     arrays = [_to_arrow(column, record.columns[column.name]) for column in COLUMNS]
-    return pa.Table.from_arrays(arrays, schema=_schema(record.metadata))
+    return pa.Table.from_arrays(arrays, schema=record_schema(record.metadata))
 
 
-def _schema(metadata: dict[str, object]) -> pa.Schema:
+def record_schema(metadata: dict[str, object]) -> pa.Schema:
+    """Schema of a record: units in the fields, the trial's description in its own.
+
+    Raises:
+        ValueError: If the metadata does not fit into JSON.
+    """
     fields = [
         pa.field(
             column.name,

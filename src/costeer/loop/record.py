@@ -4,12 +4,14 @@ A file appears under its name only when it is complete, every page has a checksu
 the same record gives the same bytes. Floats are kept bit for bit.
 """
 
+import json
 import os
 from collections.abc import Sequence
 from pathlib import Path
 
 import pyarrow as pa
 import pyarrow.csv
+import pyarrow.ipc
 import pyarrow.parquet as pq
 
 from costeer.loop.arrow import METADATA_KEY, from_table, plain_columns, to_table
@@ -32,8 +34,12 @@ __all__ = [
     "TrialRecord",
     "read_record",
     "read_recording",
+    "read_stream",
     "write_record",
 ]
+
+MARKERS_KEY = b"markers"
+"""Where a stream keeps the markers of a batch, as JSON."""
 
 _FLOATS = [column.name for column in COLUMNS if column.kind == "float64"]
 _REPETITIVE = [c.name for c in COLUMNS if c.kind in ("int8", "string")]
@@ -101,10 +107,11 @@ def read_record(
 
 
 def read_recording(path: str | os.PathLike[str]) -> TrialRecord:
-    """Read a trial record or any table: CSV, gzipped CSV or Parquet.
+    """Read a trial record or any table: CSV, gzipped CSV, Parquet or Arrow stream.
 
     Args:
-        path: The file. A name that ends in `.csv` or `.csv.gz` is read as CSV.
+        path: The file. A name that ends in `.csv` or `.csv.gz` is read as CSV, one in
+            `.arrow` as the stream of a drive, which may have been cut off.
 
     Returns:
         A trial record; of a plain table its columns as they are, without metadata.
@@ -115,10 +122,52 @@ def read_recording(path: str | os.PathLike[str]) -> TrialRecord:
     """
     if str(path).endswith((".csv", ".csv.gz")):
         return _plain_recording(_csv_table(Path(path)), path)
+    if str(path).endswith(".arrow"):
+        return read_stream(path)
     file = _opened(Path(path))
     if METADATA_KEY in (file.schema_arrow.metadata or {}):
         return _record_in(file, path, list(COLUMN_NAMES))
     return _plain_recording(_rows(file, path, file.schema_arrow.names), path)
+
+
+def read_stream(path: str | os.PathLike[str]) -> TrialRecord:
+    """Read the Arrow stream that a drive writes while it goes on.
+
+    A drive that was cut off leaves a stream without an end; all of its whole batches
+    are read. Markers lie beside the batches and come as `markers` in the metadata.
+
+    Raises:
+        ValueError: If there is not one whole batch of a trial in it.
+        OSError: If it cannot be read.
+    """
+    table, markers = stream_table(Path(path))
+    try:
+        record = from_table(table, list(COLUMN_NAMES))
+    except ValueError as error:
+        raise ValueError(f"{path}: {error}") from error
+    return TrialRecord({**record.metadata, "markers": markers}, record.columns)
+
+
+def stream_table(path: Path) -> tuple[pa.Table, list[object]]:
+    """All whole batches of an Arrow stream, and the markers beside them.
+
+    Raises:
+        ValueError: If there is none.
+        OSError: If it cannot be read.
+    """
+    content = path.read_bytes()
+    batches, markers = [], []
+    try:
+        reader = pa.ipc.open_stream(pa.BufferReader(content))
+        while True:
+            batch, beside = reader.read_next_batch_with_custom_metadata()
+            batches.append(batch)
+            markers += json.loads(beside[MARKERS_KEY]) if beside else []
+    except (StopIteration, pa.ArrowException, OSError):
+        pass  # the end, or what a killed process left of a batch
+    if not any(batch.num_rows for batch in batches):
+        raise ValueError(f"{path} holds no row of a drive; it had not begun")
+    return pa.Table.from_batches(batches), markers
 
 
 def _plain_recording(table: pa.Table, path: str | os.PathLike[str]) -> TrialRecord:

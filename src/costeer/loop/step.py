@@ -165,7 +165,7 @@ def sense(parameters: LoopParameters, state: LoopState) -> Measurement:
     )
 
 
-class _Motion(NamedTuple):
+class PlantMotion(NamedTuple):
     """What the plant steps carry on: world, arms, sum of the muscles' torque [N·m]."""
 
     world: WorldState
@@ -173,7 +173,7 @@ class _Motion(NamedTuple):
     muscles: Real
 
 
-class _Held(NamedTuple):
+class PlantHeld(NamedTuple):
     """What is held over the plant steps of a control step."""
 
     car: CarParameters
@@ -186,7 +186,7 @@ class _Held(NamedTuple):
 
 
 @compiled
-def _plant_step(motion: _Motion, held: _Held) -> _Motion:
+def plant_step(motion: PlantMotion, held: PlantHeld) -> PlantMotion:
     """Arms and world one plant step later."""
     angle = motion.world.column.steering_wheel_angle
     moved_arm = arm.step(held.arm, motion.arm, held.command, angle, held.dt)
@@ -197,12 +197,12 @@ def _plant_step(motion: _Motion, held: _Held) -> _Motion:
         drive_command=held.drive_command,
     )
     moved = world.step(held.car, held.column, motion.world, inputs, held.dt)
-    return _Motion(world=moved, arm=moved_arm, muscles=motion.muscles + muscles)
+    return PlantMotion(world=moved, arm=moved_arm, muscles=motion.muscles + muscles)
 
 
 @compiled
 def _felt_torque(
-    parameters: LoopParameters, before: WorldState, after: _Motion, action: Action
+    parameters: LoopParameters, before: WorldState, after: PlantMotion, action: Action
 ) -> Real:
     """Mean torque between hands and wheel over a control step [N·m]."""
     old, new = before.column, after.world.column
@@ -225,7 +225,7 @@ def move(
     while the hands hold it.
     """
     hands = parameters.driver.arm
-    held = _Held(
+    held = PlantHeld(
         car=parameters.car,
         column=arm.held_column(hands, parameters.column, action.arm.stiffening),
         arm=hands,
@@ -236,8 +236,8 @@ def move(
         ),
         dt=DT / parameters.plant_steps,
     )
-    start = _Motion(world=state.world, arm=state.driver.arm, muscles=0.0)
-    motion = repeat(_plant_step, parameters.plant_steps, start, held)
+    start = PlantMotion(world=state.world, arm=state.driver.arm, muscles=0.0)
+    motion = repeat(plant_step, parameters.plant_steps, start, held)
     moved = motion.arm
     return motion.world, ArmState(
         equilibrium=moved.equilibrium,

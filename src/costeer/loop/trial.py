@@ -127,28 +127,30 @@ def simulate_trial(
     )
     rows = rollout(parameters, script, packed, network_memory(packed), noise, engine)
     return TrialRecord(
-        metadata=_metadata(setup, parameters, network_hash),
+        metadata=trial_metadata(setup, parameters, network_hash),
         columns=record_columns(rows, is_assisted(setup)),
     )
 
 
 def record_columns(
-    rows: NDArray[np.float64], assisted: bool
+    rows: NDArray[np.float64], assisted: bool | NDArray[np.bool_]
 ) -> dict[str, NDArray[Any]]:
     """Rows of the loop as the columns of a record.
 
     Args:
         rows: In the order of `ROW_COLUMNS`, shape `(time, column)`.
-        assisted: Without assistance the guidance columns are empty.
+        assisted: Without assistance the guidance columns are empty; for all rows, or
+            one flag for each, shape `(time,)`.
     """
+    helped = np.broadcast_to(assisted, len(rows))
     columns = {}
     for column in COLUMNS:
         values = np.ascontiguousarray(rows[:, ROW_COLUMNS.index(column.name)])
         if column.name == "mode":
-            columns["mode"] = np.array(MODES)[values.astype(int) * assisted]
+            columns["mode"] = np.array(MODES)[values.astype(int) * helped]
             continue
-        if not assisted and column.name in GUIDANCE_COLUMNS:
-            values = np.full_like(values, np.nan)
+        if column.name in GUIDANCE_COLUMNS:
+            values = np.where(helped, values, np.nan)
         columns[column.name] = _as_kind(column, values)
     return columns
 
@@ -162,7 +164,7 @@ def _as_kind(column: Column, values: NDArray[np.float64]) -> NDArray[Any]:
     return np.ma.MaskedArray(whole, mask=missing) if column.nullable else whole
 
 
-def _metadata(
+def trial_metadata(
     setup: TrialSetup, parameters: LoopParameters, network_hash: str | None
 ) -> dict[str, object]:
     """The record's description of the trial, spec section 6."""

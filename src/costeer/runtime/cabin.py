@@ -1,0 +1,308 @@
+"""Wheel or virtual hands, car and controller of one drive, without any clock.
+
+The real-time process calls `control` 60 times a second and `advance` 960 times; a
+test calls them as fast as it likes and gets the same numbers.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from costeer.base.packing import leaf_names
+from costeer.loop.person import PersonInput, WheelInput, initial_motion
+from costeer.loop.realtime import (
+    NOTHING_GIVEN,
+    ObserverMemory,
+    control_tick,
+    hands_tick,
+    observer_memory,
+    observer_tick,
+    person_memory,
+    wheel_tick,
+)
+from costeer.loop.step import LoopParameters
+from costeer.plant.parameters import CarParameters
+from costeer.runtime.guard import GuardParameters, GuardState
+from costeer.runtime.guard import step as guarded
+from costeer.runtime.hands import (
+    FootParameters,
+    FootState,
+    HandsParameters,
+    HandsState,
+    asked_angle,
+    press,
+)
+from costeer.runtime.hands import step as move_hands
+from costeer.runtime.setup import PLANT_DT, PLANT_STEPS, DriveSetup, drive_parameters
+from costeer.runtime.tunables import Tunable, place_of
+from costeer.runtime.wheels.calibration import WheelCalibration
+from costeer.runtime.wheels.interface import Wheel, WheelReading
+from costeer.sensing.torque_observer import TorqueObserverParameters
+
+_MOTION = leaf_names(initial_motion(LoopParameters()))
+_ANGLE = _MOTION.index("plant.world.column.steering_wheel_angle")
+_RATE = _MOTION.index("plant.world.column.steering_wheel_rate")
+_SPEED = _MOTION.index("plant.world.vehicle.longitudinal_velocity")
+
+STRAIGHT = 0.35
+"""A trial begins with the wheel nearer to straight ahead than this [rad]."""
+
+
+class Controls(NamedTuple):
+    """What person and sensors say at a control step.
+
+    Attributes:
+        steer: Of a key or stick, -1 right to +1 left [-].
+        steering: Whether a key or stick is used at all.
+        accelerator: Pressed, in [0, 1] [-].
+        brake: Pressed, in [0, 1] [-].
+        head_yaw: Normalised, left positive [-].
+        head_valid: Whether the head is seen.
+        crossing_probability: Of the network; NaN for no verdict [-].
+        requested: A lane change asked for by the indicator.
+        leader_uniform: Sets the next leader's speed [-].
+    """
+
+    steer: float = 0.0
+    steering: bool = False
+    accelerator: float = 0.0
+    brake: float = 0.0
+    head_yaw: float = 0.0
+    head_valid: bool = False
+    crossing_probability: float = math.nan
+    requested: bool = False
+    leader_uniform: float = 0.0
+
+
+class Cabin:
+    """One drive from its start to its end.
+
+    Args:
+        setup: Of the drive.
+        wheel: That is open; None for virtual hands.
+    """
+
+    def __init__(self, setup: DriveSetup, wheel: Wheel | None) -> None:
+        self._setup = setup
+        self._parameters = drive_parameters(setup)
+        self.wheel = wheel
+        self.reading: WheelReading | None = None
+        self.wheel_torque = 0.0
+        self.driver_torque = 0.0
+        self._guard = guard_parameters(wheel)
+        self._guard_state = GuardState()
+        self._observer: ObserverMemory | None = None
+        self._skipped = 0
+        self.begin()
+
+    def begin(self) -> None:
+        """Put the car at the start of the course; tuned values stay."""
+        tuned = getattr(self, "memory", None)
+        self.memory = person_memory(self._parameters)
+        if tuned is not None:
+            self.memory.parameters[:] = tuned.parameters
+        self.hands = HandsState()
+        keeps = self._setup.keeps_speed
+        speed = self._setup.trial.speed
+        self._foot = FootState(kept_speed=speed if keeps else math.nan)
+        self.first_row()
+
+    def first_row(self) -> NDArray[np.float64]:
+        """The row of the car at rest in time; nothing is stepped."""
+        memory = self.memory
+        control_tick(
+            memory.parameters,
+            memory.state.copy(),
+            memory.motion.copy(),
+            memory.given,
+            self._setup.wheel is not None,
+            memory.held.copy(),
+            memory.row,
+        )
+        return memory.row
+
+    @property
+    def car(self) -> CarParameters:
+        """Of the trial."""
+        return self._parameters.car
+
+    @property
+    def fade(self) -> float:
+        """Share of the torque that reaches a real wheel [-]."""
+        return self._guard_state.fade
+
+    @property
+    def steering_wheel_angle(self) -> float:
+        """Of the wheel now [rad]."""
+        if self.reading is not None:
+            return self.reading.steering_wheel_angle
+        return float(self.memory.motion[_ANGLE])
+
+    def tune(self, tunable: Tunable, value: float) -> float:
+        """Set a tunable; return what it was."""
+        place = place_of(tunable)
+        before = float(self.memory.parameters[place])
+        self.memory.parameters[place] = value
+        return before
+
+    def value_of(self, tunable: Tunable) -> float:
+        """What a tunable is now."""
+        return float(self.memory.parameters[place_of(tunable)])
+
+    def control(self, controls: Controls) -> NDArray[np.float64]:
+        """One control step; returns the row, which the next call overwrites."""
+        memory = self.memory
+        memory.given[:] = self._given(controls)
+        control_tick(
+            memory.parameters,
+            memory.state,
+            memory.motion,
+            memory.given,
+            self._setup.wheel is not None,
+            memory.held,
+            memory.row,
+        )
+        return memory.row
+
+    def _given(self, controls: Controls) -> PersonInput:
+        """Hands and foot move; the rest is passed on."""
+        speed = float(self.memory.motion[_SPEED])
+        self.hands = move_hands(
+            HandsParameters(),
+            self.hands,
+            asked_angle(HandsParameters(), self.car, speed, controls.steer),
+            controls.steering,
+            float(self.memory.motion[_ANGLE]),
+            PLANT_DT * PLANT_STEPS,
+        )
+        self._foot, accelerator, brake = press(
+            FootParameters(), self._foot, self.car, speed, self._pedals(controls)
+        )
+        return NOTHING_GIVEN._replace(
+            intended_angle=self.hands.intended_angle,
+            grip=self.hands.grip,
+            accelerator=accelerator,
+            brake=brake,
+            head_yaw=controls.head_yaw,
+            head_yaw_valid=controls.head_valid,
+            crossing_probability=controls.crossing_probability,
+            requested=controls.requested,
+            leader_uniform=controls.leader_uniform,
+        )
+
+    def _pedals(self, controls: Controls) -> tuple[float, float]:
+        """Accelerator and brake: the wheel's own pedals if it has some."""
+        reading = self.reading
+        if reading is None or math.isnan(reading.accelerator):
+            return controls.accelerator, controls.brake
+        brake = 0.0 if math.isnan(reading.brake) else reading.brake
+        return reading.accelerator, max(brake, controls.brake)
+
+    def advance(self, moving: bool, fault: bool) -> None:
+        """One plant step, of the wheel alone if the trial stands still.
+
+        Args:
+            moving: Whether the trial runs.
+            fault: Whether something is lost; a real wheel gets no torque then.
+
+        Raises:
+            WheelLost: If the wheel does not answer any more.
+        """
+        if self.wheel is None:
+            if moving:
+                memory = self.memory
+                hands_tick(memory.parameters, memory.motion, memory.held)
+            self.wheel_torque = 0.0
+            return
+        self._feel(self.wheel.read())
+        wanted = self._rendered() if moving else self.wheel_torque
+        self._guard_state, torque = guarded(
+            self._guard, self._guard_state, wanted, moving, fault, PLANT_DT
+        )
+        self._give(self.wheel, torque)
+
+    def _feel(self, reading: WheelReading) -> None:
+        """Take a reading and find the driver's torque in it."""
+        if self._observer is None:
+            self._observer = observer_memory(
+                observer_parameters(self._setup.calibration),
+                reading.steering_wheel_angle,
+            )
+        observer = self._observer
+        observer.reading[0] = reading.steering_wheel_angle
+        observer.reading[1] = reading.steering_wheel_rate
+        observer.reading[2] = self.wheel_torque
+        observed = observer_tick(
+            observer.parameters, observer.state, observer.reading, PLANT_DT
+        )
+        measured = reading.driver_torque
+        self.driver_torque = observed if math.isnan(measured) else measured
+        self.reading = reading._replace(
+            steering_wheel_rate=observer.steering_wheel_rate
+        )
+
+    def _rendered(self) -> float:
+        """Move the car on with the wheel's angle; return the torque to give [N·m]."""
+        memory, calibration = self.memory, self._setup.calibration
+        assert self.reading is not None
+        wheel = WheelInput(
+            steering_wheel_angle=self.reading.steering_wheel_angle,
+            steering_wheel_rate=self.reading.steering_wheel_rate,
+            driver_torque=self.driver_torque,
+            damping=calibration.damping if calibration else 0.0,
+            friction=calibration.friction if calibration else 0.0,
+        )
+        memory.wheel[:] = wheel
+        return wheel_tick(memory.parameters, memory.motion, memory.held, memory.wheel)
+
+    def _give(self, wheel: Wheel, torque: float) -> None:
+        """Write to the device, as often as it takes it."""
+        self.wheel_torque = torque
+        self._skipped += 1
+        if self._skipped * PLANT_DT * wheel.write_rate >= 1.0 - 1e-9:
+            wheel.write(torque)
+            self._skipped = 0
+
+    def is_straight(self) -> bool:
+        """Whether a real wheel stands so that a trial may begin."""
+        return self.wheel is None or abs(self.steering_wheel_angle) <= STRAIGHT
+
+    def meet_wheel(self) -> None:
+        """Put the column of the car at the angle of the real wheel."""
+        if self.reading is not None:
+            self.memory.motion[_ANGLE] = self.reading.steering_wheel_angle
+            self.memory.motion[_RATE] = self.reading.steering_wheel_rate
+
+    def change_wheel(self, wheel: Wheel | None) -> None:
+        """Go on with a wheel that was opened anew, or with none that answers."""
+        self.wheel = wheel
+        self._guard = guard_parameters(wheel)
+        self._guard_state = GuardState()
+        self._observer = None
+        self.wheel_torque = 0.0
+
+
+def guard_parameters(wheel: Wheel | None) -> GuardParameters:
+    """Limits of the guard: never more than the device can give."""
+    usual = GuardParameters()
+    if wheel is None:
+        return usual
+    return usual._replace(torque_limit=min(usual.torque_limit, wheel.torque_limit))
+
+
+def observer_parameters(
+    calibration: WheelCalibration | None,
+) -> TorqueObserverParameters:
+    """The observer of a device as its calibration found it."""
+    if calibration is None:
+        return TorqueObserverParameters()
+    return TorqueObserverParameters(
+        inertia=calibration.inertia,
+        damping=calibration.damping,
+        friction=calibration.friction,
+        latency=calibration.latency,
+    )

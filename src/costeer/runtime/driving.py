@@ -1,0 +1,387 @@
+"""A drive as the real-time process steps it: commands, safety, control, frames.
+
+Nothing here waits for a clock; `process.py` calls `control_step` 60 times a second
+and `plant_step` 960 times. What others must know goes to shared memory, what they ask
+for comes through a pipe that is looked at once in a control step.
+"""
+
+from __future__ import annotations
+
+import math
+import socket
+import time
+from collections.abc import Callable
+from contextlib import suppress
+from multiprocessing.connection import Connection
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from costeer.loop.rows import ROW_COLUMNS
+from costeer.plant.road import adjacent_side
+from costeer.runtime.cabin import Cabin, Controls
+from costeer.runtime.frame import (
+    BROWSER_LOST,
+    ENDED,
+    FAULTS,
+    FRAME_COLUMNS,
+    NO_FAULT,
+    NOT_FINITE,
+    PAUSED,
+    RUNNING,
+    SENSOR_STALE,
+    WAITING,
+    WHEEL_LOST,
+)
+from costeer.runtime.setup import (
+    DriveSetup,
+    drive_parameters,
+    leader_draws,
+    strength_of,
+)
+from costeer.runtime.shared import Shared
+from costeer.runtime.tunables import TUNABLES, checked_value, tunable_named
+from costeer.runtime.wheels.interface import WheelLost, WheelReading
+from costeer.runtime.wheels.registry import open_wheel
+from costeer.study.conditions import CONDITION_NAMES, condition
+
+PAGE_PATIENCE = 1.0
+"""A drive pauses when no page has said a word for so long [s]."""
+
+SERVER_PATIENCE = 5.0
+"""The process ends when the server has shown no life for so long [s]."""
+
+WHEEL_PATIENCE = 0.05
+"""A reading older than this is stale [s]; with the guard's fall it ends by 100 ms."""
+
+HEAD_PATIENCE = 0.2
+"""A head seen longer ago than this is not seen [s]."""
+
+VERDICT_PATIENCE = 6
+"""Frames after which the network's last verdict no longer counts [-]."""
+
+REQUEST_DURATION = 0.1
+"""How long the indicator asks for a lane change [s]."""
+
+_LANE = ROW_COLUMNS.index("lane")
+_POSITION = ROW_COLUMNS.index("longitudinal_position")
+_TIME = ROW_COLUMNS.index("time")
+_ANGLE = ROW_COLUMNS.index("steering_wheel_angle")
+_APPEARED = ROW_COLUMNS.index("event")
+
+
+class Links(NamedTuple):
+    """What ties the process to the others; it can be sent to a spawned one.
+
+    Attributes:
+        memory: Name of the shared memory.
+        commands: Both ways: tuples of a word and its values.
+        wake: A byte is sent for every frame.
+    """
+
+    memory: str
+    commands: Connection
+    wake: socket.socket
+
+
+class Driving:
+    """The state of a drive and its two steps.
+
+    Args:
+        setup: Of the drive.
+        links: To the others.
+        shared: Memory of the drive.
+
+    Raises:
+        ValueError: If the drive cannot begin.
+        OSError: If the wheel cannot be opened.
+    """
+
+    def __init__(self, setup: DriveSetup, links: Links, shared: Shared) -> None:
+        self._setup = setup
+        self._links = links
+        self._mailbox, self._frames = shared.mailbox, shared.frames
+        self._trace = shared.trace
+        self._cabin = Cabin(setup, self._opened())
+        self._road = drive_parameters(setup).road
+        self._draws = leader_draws(setup)
+        self._frame = np.full(len(FRAME_COLUMNS), np.nan)
+        self._traced = np.zeros(6)
+        self._condition = setup.trial.condition
+        self._method = setup.trial.method
+        self.stopping = False
+        self._run_state, self._fault = WAITING, NO_FAULT
+        self._indicator, self._asked_until = 0.0, -1.0
+        self._compute_time = 0.0
+        self._leaders = 0
+        self._last_event = 0.0
+        links.wake.setblocking(False)
+
+    def _opened(self) -> Any:  # Any: Wheel or None, whatever the registry opens
+        """The wheel of the setup, open; None for virtual hands."""
+        wheel, calibration = self._setup.wheel, self._setup.calibration
+        if wheel is None or calibration is None:
+            return None
+        return open_wheel(wheel, calibration)
+
+    def warm_up(self) -> None:
+        """Compile everything before the clock runs, then begin anew."""
+        self._cabin.control(Controls())
+        self._cabin.advance(True, self._cabin.wheel is not None)
+        self._cabin.begin()
+
+    def close(self) -> None:
+        """Take the torque off the wheel and let it go."""
+        self._mailbox.put(armed=0.0)
+        self._let_go()
+
+    def _let_go(self) -> None:
+        """Close the wheel, also one that does not answer."""
+        if self._cabin.wheel is not None:
+            with suppress(OSError):
+                self._cabin.wheel.close()
+
+    # The control step, 60 Hz
+
+    def control_step(self, lateness: float) -> None:
+        """Hear, check, run the controller, tell.
+
+        Args:
+            lateness: Largest since the last control step [s].
+        """
+        start = time.perf_counter()
+        self._mailbox.put(heartbeat=start)
+        self._hear()
+        self._look_around(start)
+        if self._run_state == RUNNING:
+            row = self._cabin.control(self._controls(start))
+            self._after(row)
+        else:
+            row = self._cabin.memory.row
+        self._compute_time = time.perf_counter() - start
+        self._tell(row, lateness)
+
+    def _controls(self, now: float) -> Controls:
+        """What person, head and network say at this step."""
+        box = self._mailbox
+        time_now = float(self._cabin.memory.row[_TIME])
+        return Controls(
+            steer=box.get("steer"),
+            steering=box.get("steering") > 0.5,
+            accelerator=box.get("accelerator"),
+            brake=box.get("brake"),
+            head_yaw=box.get("head_yaw"),
+            head_valid=self._sees_head(now),
+            crossing_probability=self._verdict(),
+            requested=self._requests(time_now),
+            leader_uniform=float(self._draws[self._leaders % len(self._draws)]),
+        )
+
+    def _sees_head(self, now: float) -> bool:
+        """Whether the head was seen lately."""
+        age = now - self._mailbox.get("head_time")
+        return self._mailbox.get("head_valid") > 0.5 and age <= HEAD_PATIENCE
+
+    def _verdict(self) -> float:
+        """The network's newest verdict, NaN if it is too old [-]."""
+        if self._setup.intention != "network":
+            return math.nan
+        age = self._frames.written - self._mailbox.get("verdict_row")
+        if age > VERDICT_PATIENCE:
+            return math.nan
+        return self._mailbox.get("crossing_probability")
+
+    def _requests(self, now: float) -> bool:
+        """Whether the indicator asks for a lane change to where there is a lane."""
+        if self._setup.intention != "indicator" or now > self._asked_until:
+            return False
+        lane = float(self._cabin.memory.row[_LANE])
+        return self._indicator == adjacent_side(self._road, lane)
+
+    def _after(self, row: Any) -> None:  # Any: an array of float64
+        """Look at what the step gave: leaders, the end of the course, numbers."""
+        event = float(row[_APPEARED])
+        if event > self._last_event:
+            self._leaders = int(event)
+        self._last_event = event
+        if not math.isfinite(row[_POSITION] + row[_ANGLE]):
+            self._break_off(NOT_FINITE)
+        elif row[_POSITION] >= self._road.length:
+            self._run_state = ENDED
+            self._mark("ended", "the end of the course is reached")
+
+    def _tell(self, row: Any, lateness: float) -> None:  # Any: an array of float64
+        """Put a frame into the ring and wake the server."""
+        frame, box = self._frame, self._mailbox
+        frame[: len(ROW_COLUMNS)] = row
+        if self._run_state != RUNNING:
+            frame[_ANGLE] = self._cabin.steering_wheel_angle
+        reading = self._cabin.reading
+        extra = (
+            float(self._run_state),
+            float(self._fault),
+            self._cabin.wheel_torque,
+            self._cabin.fade,
+            self._cabin.hands.intended_angle,
+            box.get("input_sequence"),
+            time.perf_counter() if reading is None else reading.time,
+            time.perf_counter(),
+            self._compute_time,
+            lateness,
+            self._cabin.value_of(TUNABLES[0]),
+            float(CONDITION_NAMES.index(self._condition)),
+            self._indicator,
+        )
+        frame[len(ROW_COLUMNS) :] = extra
+        self._frames.put(frame)
+        with suppress(OSError):
+            self._links.wake.send(b"f")
+
+    # The plant step, 960 Hz
+
+    def plant_step(self, late: float) -> None:
+        """Wheel and car one plant step on."""
+        moving = self._run_state == RUNNING
+        try:
+            self._cabin.advance(moving, self._fault != NO_FAULT)
+        except WheelLost:
+            self._let_go()
+            self._cabin.change_wheel(None)
+            self._break_off(WHEEL_LOST)
+        self._mailbox.put(heartbeat=time.perf_counter())
+        if moving:
+            self._put_trace(late)
+
+    def _put_trace(self, late: float) -> None:
+        """The wheel at the plant's rate, for the record."""
+        cabin, traced = self._cabin, self._traced
+        reading: WheelReading | None = cabin.reading
+        traced[0] = self._frame[_TIME]
+        traced[1] = late
+        traced[2] = cabin.steering_wheel_angle
+        traced[3] = math.nan if reading is None else reading.steering_wheel_rate
+        traced[4] = cabin.wheel_torque
+        traced[5] = math.nan if reading is None else cabin.driver_torque
+        self._trace.put(traced)
+
+    # Safety
+
+    def _look_around(self, now: float) -> None:
+        """Stop what must not go on: no server, no page, no fresh reading."""
+        if now - self._mailbox.get("server_time") > SERVER_PATIENCE:
+            self.stopping = True
+        if self._run_state != RUNNING:
+            return
+        if self._setup.needs_page:
+            silence = now - self._mailbox.get("page_time")
+            if silence > PAGE_PATIENCE:
+                self._break_off(BROWSER_LOST)
+        reading = self._cabin.reading
+        if reading is not None and now - reading.time > WHEEL_PATIENCE:
+            self._break_off(SENSOR_STALE)
+
+    def _break_off(self, fault: int) -> None:
+        """Pause for a fault; the torque ends at once, the record is kept."""
+        if self._fault == fault:
+            return
+        self._fault = fault
+        if self._run_state == RUNNING:
+            self._run_state = PAUSED
+        self._mark("fault", FAULTS[fault])
+
+    # Commands
+
+    def _hear(self) -> None:
+        """Do what the server has asked for since the last control step."""
+        while self._links.commands.poll():
+            try:
+                word, *values = self._links.commands.recv()
+            except (EOFError, OSError):
+                self.stopping = True
+                return
+            act: Callable[..., None] = getattr(self, f"_do_{word}")
+            try:
+                act(*values)
+            except (ValueError, OSError) as error:
+                self._mark("error", str(error))
+
+    def _mark(self, kind: str, text: str) -> None:
+        """Tell the server what happened, with the time of the trial."""
+        now = float(self._cabin.memory.row[_TIME])
+        self._links.commands.send(("marker", now, kind, text))
+
+    def _do_stop(self) -> None:
+        self.stopping = True
+
+    def _do_start(self) -> None:
+        if self._run_state == WAITING:
+            self._begin("started", "")
+
+    def _do_resume(self) -> None:
+        if self._run_state == PAUSED:
+            self._begin("resumed", "")
+
+    def _begin(self, kind: str, text: str) -> None:
+        """Run, if wheel and numbers allow it."""
+        if self._setup.wheel is not None and self._cabin.wheel is None:
+            self._find_wheel()
+        if self._fault == NOT_FINITE:
+            raise ValueError("a number is not finite; restart the trial")
+        if not self._cabin.is_straight():
+            raise ValueError("the wheel is turned; turn it straight ahead, then start")
+        self._fault = NO_FAULT
+        self._cabin.meet_wheel()
+        self._run_state = RUNNING
+        self._mark(kind, text)
+
+    def _find_wheel(self) -> None:
+        """Open the wheel again; it may take longer than the watchdog waits."""
+        self._mailbox.put(armed=0.0)
+        try:
+            self._cabin.change_wheel(self._opened())
+            self._cabin.advance(False, True)
+        finally:
+            self._mailbox.put(heartbeat=time.perf_counter(), armed=1.0)
+
+    def _do_pause(self, why: str) -> None:
+        if self._run_state == RUNNING:
+            self._run_state = PAUSED
+            self._mark("paused", why)
+
+    def _do_restart(self) -> None:
+        if self._fault == WHEEL_LOST:
+            raise ValueError(FAULTS[WHEEL_LOST])
+        self._fault = NO_FAULT
+        self._cabin.begin()
+        self._leaders, self._last_event = 0, 0.0
+        self._run_state = WAITING
+        self._mark("restarted", "")
+
+    def _do_indicator(self, side: float) -> None:
+        self._indicator = float(side)
+        now = float(self._cabin.memory.row[_TIME])
+        self._asked_until = now + REQUEST_DURATION if side else -1.0
+        self._mark("indicator", {-1: "right", 0: "off", 1: "left"}[int(side)])
+
+    def _do_set(self, name: str, value: float) -> None:
+        tunable = tunable_named(name)
+        before = self._cabin.tune(tunable, checked_value(tunable, value))
+        self._mark("gain", f"{name} {before:.9g} -> {value:.9g} {tunable.unit}")
+
+    def _do_condition(self, name: str) -> None:
+        chosen = condition(name)
+        self._condition = chosen.name
+        self._apply_strength()
+        if math.isfinite(chosen.change_duration):
+            self._cabin.tune(tunable_named("change_duration"), chosen.change_duration)
+        self._mark("condition", chosen.name)
+
+    def _do_method(self, name: str) -> None:
+        self._method = name
+        self._apply_strength()
+        self._mark("method", name)
+
+    def _apply_strength(self) -> None:
+        """The strength factor that condition and method ask for."""
+        factor = strength_of(condition(self._condition), self._method)
+        self._cabin.tune(tunable_named("strength_factor"), factor)

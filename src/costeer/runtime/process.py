@@ -1,0 +1,77 @@
+"""The real-time process: fixed steps by the wall clock, and nothing else.
+
+It is spawned and owns the wheel. Steps never change; a late one is followed by shorter
+waits, so that simulated time keeps to the wall clock.
+"""
+
+from __future__ import annotations
+
+import gc
+import signal
+import time
+
+from costeer.runtime.clock import (
+    SPIN,
+    SPIN_PRIVILEGED,
+    Pacer,
+    Priority,
+    own_core,
+    raise_priority,
+)
+from costeer.runtime.driving import Driving, Links
+from costeer.runtime.setup import PLANT_DT, PLANT_STEPS, DriveSetup
+from costeer.runtime.shared import Shared, close_shared, open_shared
+
+
+def run_realtime(setup: DriveSetup, links: Links) -> None:
+    """Drive until told to stop or left alone: the target of the spawned process."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the server says when to stop
+    shared = open_shared(links.memory)
+    try:
+        drive = Driving(setup, links, shared)
+    except (ValueError, OSError, ModuleNotFoundError) as error:
+        links.commands.send(("failed", str(error)))
+        close_shared(shared, unlink=False)
+        return
+    signal.signal(signal.SIGTERM, lambda *_: setattr(drive, "stopping", True))
+    try:
+        drive.warm_up()
+        priority, core = privileged()
+        links.commands.send(("ready", told(priority, core)))
+        pace(drive, shared, SPIN_PRIVILEGED if priority.realtime else SPIN)
+    finally:
+        drive.close()
+        close_shared(shared, unlink=False)
+
+
+def privileged() -> tuple[Priority, int | None]:
+    """Ask for priority, and with it for a core of one's own.
+
+    Without priority a core of one's own would only be shared with fewer chances.
+    """
+    priority = raise_priority()
+    return priority, own_core() if priority.realtime else None
+
+
+def told(priority: Priority, core: int | None) -> str:
+    """Priority and core in words."""
+    return priority.detail + ("" if core is None else f", core {core}")
+
+
+def pace(drive: Driving, shared: Shared, spin: float) -> None:
+    """Call the steps at their times until the drive stops; spin so long before [s]."""
+    gc.collect()
+    gc.freeze()
+    gc.disable()
+    pacer = Pacer(PLANT_DT, spin)
+    shared.mailbox.put(heartbeat=time.perf_counter(), armed=1.0)
+    lateness = 0.0
+    while not drive.stopping:
+        latest = 0.0
+        for step in range(PLANT_STEPS):
+            late = pacer.wait()
+            latest = max(latest, late)
+            if step == 0:
+                drive.control_step(lateness)
+            drive.plant_step(late)
+        lateness = latest

@@ -1,0 +1,108 @@
+"""The recorder: a thread of the server that keeps what the real-time process tells."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from costeer.loop.trial import shipped_network, trial_metadata
+from costeer.runtime.frame import PLACE, RUNNING
+from costeer.runtime.setup import DriveSetup, drive_parameters
+from costeer.runtime.shared import Shared
+from costeer.runtime.stream import Marker, RecordStream
+
+INTERVAL = 0.25
+"""Between two batches [s]: what a kill costs at most."""
+
+
+def drive_metadata(setup: DriveSetup) -> dict[str, object]:
+    """Description of a drive for its record; what no person has is null."""
+    network = shipped_network().hash if setup.intention == "network" else None
+    described = trial_metadata(setup.trial, drive_parameters(setup), network)
+    hands = "virtual hands" if setup.wheel is None else setup.wheel.name
+    return {
+        **described,
+        "driver": f"person, {hands}",
+        "driver_torque_source": torque_source(setup),
+        "intention_source": setup.intention,
+        "head_tracker": setup.head,
+    }
+
+
+def torque_source(setup: DriveSetup) -> str:
+    """Which of the three the driver's torque is (spec 1.4)."""
+    if setup.wheel is None:
+        return "simulated"
+    return "measured" if setup.wheel.kind == "senso" else "observed"
+
+
+class Recorder:
+    """Takes rows of the running trial from the rings to the streams.
+
+    Args:
+        shared: Memory of the drive.
+        stream: Where the trial is kept.
+        failed: Is called with a reason if nothing more can be kept.
+    """
+
+    def __init__(
+        self, shared: Shared, stream: RecordStream, failed: Callable[[str], None]
+    ) -> None:
+        self._shared = shared
+        self.stream = stream
+        self._failed = failed
+        self._markers: list[Marker] = []
+        self._next_frame = shared.frames.written
+        self._next_trace = shared.trace.written
+        self._last_time = -1.0
+        self._stop = threading.Event()
+        self._lock = threading.Lock()
+        self._thread = threading.Thread(target=self._run, daemon=True)
+
+    def start(self) -> None:
+        """Begin to record."""
+        self._thread.start()
+
+    def mark(self, marker: Marker) -> None:
+        """Keep a marker with the next batch."""
+        with self._lock:
+            self._markers.append(marker)
+
+    def stop(self) -> None:
+        """Keep what is left, then close the streams."""
+        self._stop.set()
+        if self._thread.is_alive():
+            self._thread.join()
+        self.stream.close()
+
+    def _run(self) -> None:
+        try:
+            while not self._stop.wait(INTERVAL):
+                self._take()
+            self._take()
+        except (OSError, ValueError) as error:
+            self._failed(f"the record cannot be written: {error}")
+
+    def _take(self) -> None:
+        """Move new rows of the running trial to the streams."""
+        self._next_frame, frames = self._shared.frames.since(self._next_frame)
+        rows = self._running(frames)
+        with self._lock:
+            markers, self._markers = self._markers, []
+        if len(rows) or markers:
+            assisted = rows[:, PLACE["strength_factor"]] > 0.0
+            self.stream.write(rows, assisted, markers)
+        self._next_trace, traced = self._shared.trace.since(self._next_trace)
+        if len(traced):
+            self.stream.write_trace(traced)
+
+    def _running(self, frames: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Frames of the running trial, each moment once."""
+        time = frames[:, PLACE["time"]]
+        kept = (frames[:, PLACE["run_state"]] == RUNNING) & (time > self._last_time)
+        if kept.any():
+            self._last_time = float(time[kept][-1])
+        return frames[kept]

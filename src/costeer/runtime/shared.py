@@ -1,0 +1,199 @@
+"""Memory that the processes of a drive share: rings, a mailbox and a heartbeat.
+
+Every number has one writer. A ring is written at its head and read by anyone at their
+own pace; a reader that is too slow finds the oldest rows overwritten and skips them.
+Each row bears its number twice, before and after its values, so that a row that was
+being written is not taken for a whole one.
+"""
+
+from __future__ import annotations
+
+from contextlib import suppress
+from multiprocessing.shared_memory import SharedMemory
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from costeer.runtime.frame import FRAME_COLUMNS, TRACE_COLUMNS
+
+FRAME_ROWS = 1024
+"""Frames kept: 17 s at 60 Hz."""
+
+TRACE_ROWS = 16384
+"""Rows of the wheel's trace kept: 17 s at 960 Hz."""
+
+MAILBOX = (
+    "input_sequence",
+    "steer",
+    "accelerator",
+    "brake",
+    "steering",
+    "page_time",
+    "server_time",
+    "head_yaw",
+    "head_valid",
+    "head_time",
+    "crossing_probability",
+    "verdict_row",
+    "heartbeat",
+    "armed",
+    "stalled",
+)
+"""Newest values only, [s] on the host's monotonic clock where it is a time.
+
+`page_time` is of the last word from a driver's page, `server_time` of the server's own
+life, `verdict_row` the number of the frame that the probability belongs to,
+`heartbeat` of the real-time process, `armed` 1 while the watchdog has to look, and
+`stalled` 1 once it had to act.
+"""
+
+_PLACES = {name: place for place, name in enumerate(MAILBOX)}
+
+
+class Ring:
+    """Rows of numbers from one writer to any number of readers.
+
+    Args:
+        numbers: Shared memory, shape `(1 + rows * (columns + 2),)`, zeroed.
+        rows: That it keeps.
+        columns: Numbers in a row.
+    """
+
+    def __init__(self, numbers: NDArray[np.float64], rows: int, columns: int) -> None:
+        self._head = numbers[:1]
+        self._rows = numbers[1:].reshape(rows, columns + 2)
+        self.size = rows
+
+    @property
+    def written(self) -> int:
+        """Rows written so far."""
+        return int(self._head[0])
+
+    def put(self, values: NDArray[np.float64]) -> None:
+        """Append a row; only one process may."""
+        number = self._head[0] + 1.0
+        slot = self._rows[int(number - 1.0) % self.size]
+        slot[0] = number
+        slot[1:-1] = values
+        slot[-1] = number
+        self._head[0] = number
+
+    def since(self, first: int) -> tuple[int, NDArray[np.float64]]:
+        """Whole rows from number `first` on, and the number of the next.
+
+        Args:
+            first: Number of the first row that is wanted, counted from 0.
+
+        Returns:
+            Number to ask for next time, and rows, shape `(row, column)`; those that
+            were overwritten are left out.
+        """
+        written = self.written
+        first = max(first, written - self.size + 1, 0)
+        if first >= written:
+            return max(first, written), self._rows[:0, 1:-1].copy()
+        places = np.arange(first, written)
+        taken = self._rows[places % self.size]
+        whole = (taken[:, 0] == places + 1.0) & (taken[:, -1] == places + 1.0)
+        return written, taken[whole, 1:-1]
+
+
+class Mailbox:
+    """Newest values by name; each name has one writer."""
+
+    def __init__(self, numbers: NDArray[np.float64]) -> None:
+        self._numbers = numbers
+
+    def get(self, name: str) -> float:
+        """The newest value of `name`."""
+        return float(self._numbers[_PLACES[name]])
+
+    def put(self, **values: float) -> None:
+        """Set values in the order given; a reader may see some before others."""
+        for name, value in values.items():
+            self._numbers[_PLACES[name]] = value
+
+
+class Shared(NamedTuple):
+    """Everything that is shared, as one process sees it.
+
+    Attributes:
+        memory: To be closed, and unlinked by the process that made it.
+        mailbox: Newest values.
+        frames: At 60 Hz, columns as `FRAME_COLUMNS`.
+        trace: Of the wheel at the plant's rate, columns as `TRACE_COLUMNS`.
+    """
+
+    memory: SharedMemory
+    mailbox: Mailbox
+    frames: Ring
+    trace: Ring
+
+
+def _ring_size(rows: int, columns: int) -> int:
+    return 1 + rows * (columns + 2)
+
+
+_FRAMES = _ring_size(FRAME_ROWS, len(FRAME_COLUMNS))
+_TRACE = _ring_size(TRACE_ROWS, len(TRACE_COLUMNS))
+_TOTAL = len(MAILBOX) + _FRAMES + _TRACE
+
+
+def make_shared() -> Shared:
+    """Make the memory of a drive; close and unlink it in the end."""
+    memory = SharedMemory(create=True, size=8 * _TOTAL)
+    shared = _view(memory)
+    np.ndarray(_TOTAL, np.float64, memory.buf)[:] = 0.0
+    shared.mailbox.put(head_yaw=0.0, crossing_probability=np.nan, verdict_row=-1.0)
+    return shared
+
+
+def open_shared(name: str) -> Shared:
+    """Open the memory that another process made.
+
+    Raises:
+        FileNotFoundError: If it is gone.
+    """
+    return _view(attached(name))
+
+
+def attached(name: str) -> SharedMemory:
+    """Shared memory that this process does not own and will not unlink.
+
+    Before Python 3.13 the resource tracker of a spawned process would unlink it when
+    that process ends; it is told not to.
+    """
+    from multiprocessing import resource_tracker
+
+    original = resource_tracker.register
+    resource_tracker.register = _nothing  # type: ignore[assignment]  # for this call
+    try:
+        return SharedMemory(name=name)
+    finally:
+        resource_tracker.register = original
+
+
+def _nothing(name: str, rtype: str) -> None:
+    """Register nothing."""
+
+
+def _view(memory: SharedMemory) -> Shared:
+    numbers: NDArray[np.float64] = np.ndarray(_TOTAL, np.float64, memory.buf)
+    mailbox, rest = numbers[: len(MAILBOX)], numbers[len(MAILBOX) :]
+    return Shared(
+        memory=memory,
+        mailbox=Mailbox(mailbox),
+        frames=Ring(rest[:_FRAMES], FRAME_ROWS, len(FRAME_COLUMNS)),
+        trace=Ring(rest[_FRAMES:], TRACE_ROWS, len(TRACE_COLUMNS)),
+    )
+
+
+def close_shared(shared: Shared, unlink: bool) -> None:
+    """Let go of the memory; `unlink` by the process that made it."""
+    # Views of it may be alive in this process: the system frees it at its end.
+    with suppress(BufferError):
+        shared.memory.close()
+    if unlink:
+        with suppress(FileNotFoundError):
+            shared.memory.unlink()

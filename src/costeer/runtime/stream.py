@@ -1,0 +1,200 @@
+"""The record of a drive while it goes on: Arrow streams that survive a kill.
+
+Every quarter of a second a batch is written and flushed, so a process that is killed
+loses no more than that. At the end the streams become Parquet, the trial record of
+the studies and beside it the wheel at the plant's rate.
+"""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.ipc
+import pyarrow.parquet as pq
+from numpy.typing import NDArray
+
+from costeer.loop.arrow import record_schema, to_table
+from costeer.loop.columns import TrialRecord, validated
+from costeer.loop.record import MARKERS_KEY, read_stream, stream_table, write_record
+from costeer.loop.rows import ROW_COLUMNS
+from costeer.loop.trial import record_columns
+from costeer.runtime.frame import TRACE_COLUMNS, TRACE_UNITS
+
+Marker = dict[str, object]
+"""What happened and when: `time`, `kind`, `text`."""
+
+
+class RecordPaths(NamedTuple):
+    """Where the record of a drive lies, during and after it.
+
+    Attributes:
+        record: The trial record, Parquet.
+        stream: The same while the drive goes on.
+        trace: The wheel at the plant's rate, Parquet.
+        trace_stream: The same while the drive goes on.
+    """
+
+    record: Path
+    stream: Path
+    trace: Path
+    trace_stream: Path
+
+
+def record_paths(record: Path) -> RecordPaths:
+    """All files of a record.
+
+    Raises:
+        ValueError: If the name does not end in `.parquet`.
+    """
+    if record.suffix != ".parquet":
+        raise ValueError(
+            f"--record is {str(record)!r}; give a name that ends in .parquet"
+        )
+    return RecordPaths(
+        record=record,
+        stream=record.with_suffix(".arrow"),
+        trace=record.with_suffix(".wheel.parquet"),
+        trace_stream=record.with_suffix(".wheel.arrow"),
+    )
+
+
+def next_free(record: Path) -> Path:
+    """The path itself, or with a number, if a trial has already been recorded there."""
+    number, candidate = 1, record
+    while candidate.exists() or record_paths(candidate).stream.exists():
+        number += 1
+        candidate = record.with_stem(f"{record.stem}-{number}")
+    return candidate
+
+
+def check_free(record: Path) -> None:
+    """Refuse to write over what a person has driven.
+
+    Raises:
+        ValueError: If there is a record, or what is left of one.
+    """
+    paths = record_paths(record)
+    if paths.record.exists():
+        raise ValueError(f"{paths.record} exists; choose another --record")
+    if paths.stream.exists():
+        raise ValueError(
+            f"{paths.stream} is what a drive left that was cut off; make a record of "
+            f"it with: costeer export {paths.stream} --to parquet --out NAME.parquet, "
+            "or choose another --record"
+        )
+
+
+class RecordStream:
+    """The two streams of one trial.
+
+    Args:
+        paths: Where they lie.
+        metadata: Of the trial, as its record will have it.
+
+    Raises:
+        OSError: If they cannot be written.
+    """
+
+    def __init__(self, paths: RecordPaths, metadata: dict[str, object]) -> None:
+        self.paths = paths
+        self._metadata = metadata
+        self.num_rows = 0
+        paths.stream.parent.mkdir(parents=True, exist_ok=True)
+        self._schema = record_schema(metadata)
+        self._file = paths.stream.open("xb")
+        self._writer = pa.ipc.new_stream(self._file, self._schema)
+        self._trace_file = paths.trace_stream.open("wb")
+        self._trace = pa.ipc.new_stream(self._trace_file, trace_schema())
+        self._file.flush()
+
+    def write(
+        self,
+        rows: NDArray[np.float64],
+        assisted: NDArray[np.bool_],
+        markers: list[Marker],
+    ) -> None:
+        """Append a batch and flush it.
+
+        Args:
+            rows: In the order of `ROW_COLUMNS`, shape `(time, column)`; may be none
+                if there are markers.
+            assisted: Whether the guidance had strength, shape `(time,)`.
+            markers: What happened since the last batch.
+        """
+        batch = self._batch(rows[:, : len(ROW_COLUMNS)], assisted)
+        beside = {MARKERS_KEY: json.dumps(markers)} if markers else None
+        self._writer.write_batch(batch, custom_metadata=beside)
+        self._file.flush()
+        self.num_rows += len(rows)
+
+    def _batch(
+        self, rows: NDArray[np.float64], assisted: NDArray[np.bool_]
+    ) -> pa.RecordBatch:
+        """The rows as one batch of a record."""
+        if len(rows) == 0:
+            empty = [pa.array([], field.type) for field in self._schema]
+            return pa.RecordBatch.from_arrays(empty, schema=self._schema)
+        record = TrialRecord(self._metadata, record_columns(rows, assisted))
+        return to_table(validated(record)).combine_chunks().to_batches()[0]
+
+    def write_trace(self, rows: NDArray[np.float64]) -> None:
+        """Append rows of the wheel at the plant's rate and flush them."""
+        arrays = [pa.array(np.ascontiguousarray(column)) for column in rows.T]
+        self._trace.write_batch(pa.record_batch(arrays, schema=trace_schema()))
+        self._trace_file.flush()
+
+    def close(self) -> None:
+        """End the streams; the files stay as they are."""
+        for writer, file in (
+            (self._writer, self._file),
+            (self._trace, self._trace_file),
+        ):
+            writer.close()
+            file.close()
+
+
+def trace_schema() -> pa.Schema:
+    """Schema of the wheel's trace, with units."""
+    return pa.schema(
+        [
+            pa.field(name, pa.float64(), nullable=False, metadata={"unit": unit})
+            for name, unit in zip(TRACE_COLUMNS, TRACE_UNITS, strict=True)
+        ]
+    )
+
+
+def finish(paths: RecordPaths) -> bool:
+    """Make Parquet of the streams and remove them; the last thing of a drive.
+
+    Returns:
+        Whether there was a trial to keep; a drive that never began leaves nothing.
+
+    Raises:
+        OSError: If the record cannot be written; the streams stay.
+    """
+    try:
+        record = read_stream(paths.stream)
+    except ValueError:
+        paths.stream.unlink()
+        paths.trace_stream.unlink(missing_ok=True)
+        return False
+    write_record(paths.record, record)
+    _finish_trace(paths)
+    paths.stream.unlink()
+    paths.trace_stream.unlink(missing_ok=True)
+    return True
+
+
+def _finish_trace(paths: RecordPaths) -> None:
+    """The wheel's trace as Parquet, whole or not at all."""
+    try:
+        table, _ = stream_table(paths.trace_stream)
+    except (ValueError, FileNotFoundError):
+        return
+    partial = paths.trace.with_name(paths.trace.name + ".tmp")
+    pq.write_table(table, partial, compression="zstd")
+    partial.replace(paths.trace)

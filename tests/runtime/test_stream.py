@@ -1,0 +1,143 @@
+"""Whatever was driven is kept, also when the process is killed in the middle."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pyarrow.parquet as pq
+import pytest
+
+from costeer.loop.record import read_record, read_recording, read_stream
+from costeer.loop.rows import ROW_COLUMNS
+from costeer.loop.scenario import TrialSetup
+from costeer.runtime.frame import TRACE_COLUMNS
+from costeer.runtime.recorder import drive_metadata
+from costeer.runtime.setup import DriveSetup, trial_setup
+from costeer.runtime.stream import (
+    RecordStream,
+    check_free,
+    finish,
+    next_free,
+    record_paths,
+)
+
+METADATA = drive_metadata(
+    DriveSetup(trial=trial_setup("strong-normal", "ibhs", TrialSetup()))
+)
+
+
+def rows(first: int, number: int) -> np.ndarray:  # type: ignore[type-arg]
+    """Rows of a car that drives straight on at 20 m/s."""
+    made = np.zeros((number, len(ROW_COLUMNS)))
+    time_now = np.arange(first, first + number) / 60.0
+    made[:, ROW_COLUMNS.index("time")] = time_now
+    made[:, ROW_COLUMNS.index("longitudinal_position")] = 20.0 * time_now
+    made[:, ROW_COLUMNS.index("mode")] = 1.0
+    made[:, ROW_COLUMNS.index("haptic_gain")] = 1.0
+    made[:, ROW_COLUMNS.index("driver_intention")] = np.nan
+    return made
+
+
+def test_streams_become_the_record_with_its_markers_and_the_trace(
+    tmp_path: Path,
+) -> None:
+    paths = record_paths(tmp_path / "trial.parquet")
+    stream = RecordStream(paths, METADATA)
+    stream.write(rows(0, 15), np.full(15, True), [])
+    gain = {"time": 0.25, "kind": "gain", "text": "preview_time 1.5 -> 2 s"}
+    stream.write(rows(15, 15), np.arange(15) < 5, [gain])
+    ended = {"time": 0.5, "kind": "ended", "text": ""}
+    stream.write(rows(30, 0), np.full(0, True), [ended])
+    stream.write_trace(np.ones((32, len(TRACE_COLUMNS))))
+    stream.close()
+    assert finish(paths)
+    record = read_record(paths.record)
+    assert record.metadata["markers"] == [gain, ended]
+    assert record.metadata["condition"] == "strong-normal"
+    np.testing.assert_array_equal(record.columns["time"], np.arange(30) / 60.0)
+    # Ten rows were driven in manual: no guidance is claimed there.
+    assert (record.columns["mode"][-10:] == "manual").all()
+    assert np.isnan(record.columns["haptic_gain"][-10:]).all()
+    assert (record.columns["haptic_gain"][:20] == 1.0).all()
+    assert record.columns["driver_intention"].mask.all()
+    assert pq.read_table(paths.trace).num_rows == 32
+    assert sorted(p.name for p in tmp_path.iterdir()) == [
+        "trial.parquet",
+        "trial.wheel.parquet",
+    ]
+
+
+def test_drive_that_never_began_leaves_nothing(tmp_path: Path) -> None:
+    paths = record_paths(tmp_path / "trial.parquet")
+    stream = RecordStream(paths, METADATA)
+    marker = {"time": 0.0, "kind": "condition", "text": "manual"}
+    stream.write(rows(0, 0), np.full(0, True), [marker])
+    stream.close()
+    assert not finish(paths)
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("cut", [1, 7, 100, 1000])
+def test_stream_that_is_cut_anywhere_gives_all_whole_batches(
+    tmp_path: Path, cut: int
+) -> None:
+    paths = record_paths(tmp_path / "trial.parquet")
+    stream = RecordStream(paths, METADATA)
+    for k in range(8):
+        stream.write(rows(15 * k, 15), np.full(15, True), [])
+    size = paths.stream.stat().st_size
+    whole = paths.stream.read_bytes()
+    stream.write(rows(120, 15), np.full(15, True), [])
+    stream.close()
+    paths.stream.write_bytes(whole + paths.stream.read_bytes()[size : size + cut])
+    assert len(read_stream(paths.stream).columns["time"]) == 120
+    assert len(read_recording(paths.stream).columns["time"]) == 120
+
+
+KILLED = """
+import sys, time
+from pathlib import Path
+import numpy as np
+from tests.runtime.test_stream import METADATA, RecordStream, record_paths, rows
+stream = RecordStream(record_paths(Path(sys.argv[1])), METADATA)
+for k in range(1000):
+    stream.write(rows(15 * k, 15), np.full(15, True), [])
+    print(15 * (k + 1), flush=True)
+    time.sleep(0.02)
+"""
+
+
+@pytest.mark.skipif(os.name != "posix", reason="there is no kill -9")
+def test_killed_process_leaves_all_that_it_had_flushed(tmp_path: Path) -> None:
+    path = tmp_path / "trial.parquet"
+    command = [sys.executable, "-c", KILLED, str(path)]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as process:
+        assert process.stdout is not None
+        for _ in range(6):
+            flushed = int(process.stdout.readline())
+        time.sleep(0.01)
+        process.send_signal(signal.SIGKILL)
+    assert len(read_stream(path.with_suffix(".arrow")).columns["time"]) >= flushed
+
+
+def test_nothing_that_a_person_drove_is_written_over(tmp_path: Path) -> None:
+    path = tmp_path / "trial.parquet"
+    check_free(path)
+    path.with_suffix(".arrow").touch()
+    with pytest.raises(ValueError, match=r"cut off.*costeer export"):
+        check_free(path)
+    path.touch()
+    with pytest.raises(ValueError, match="exists; choose another --record"):
+        check_free(path)
+    assert next_free(path) == tmp_path / "trial-2.parquet"
+
+
+def test_record_must_be_named_parquet(tmp_path: Path) -> None:
+    with pytest.raises(ValueError, match=r"ends in \.parquet"):
+        record_paths(tmp_path / "trial.csv")
