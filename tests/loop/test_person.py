@@ -9,7 +9,8 @@ import pytest
 from numpy.typing import NDArray
 
 from costeer.base.packing import pack, packed, unpack
-from costeer.loop.person import PersonInput, WheelInput, initial_motion
+from costeer.loop.person import PersonInput, initial_motion
+from costeer.loop.real_wheel import WheelInput
 from costeer.loop.realtime import (
     NOTHING_GIVEN,
     PersonMemory,

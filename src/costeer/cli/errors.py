@@ -21,7 +21,15 @@ _EXTRAS = {
     "gymnasium": "bench",
     "vehiclemodels": "bench",
     "onnx": "dev",
-    "onnxruntime": "dev",
+    "onnxruntime": "drive",
+    "cv2": "drive",
+    "google": "drive",
+    "google.protobuf": "drive",
+    "hid": "drive",
+    "mcap": "drive",
+    "sdl2": "drive",
+    "can": "can",
+    "pylsl": "lsl",
 }
 """Extra of costeer that brings each module which a plain install lacks."""
 

@@ -3,8 +3,8 @@
 Controller, world and record are those of the studies (loop/step.py); what a virtual
 driver would do comes in from outside: at 60 Hz the pedals, the head, the network's
 verdict, and at the plant's rate either the intended angle of virtual hands
-(`hands_step`) or the angle of a real wheel (`wheel_step`). The order and the delays
-are the same: a torque computed from a sample acts one control step later.
+(`hands_step`) or the angle of a real wheel (loop/real_wheel.py). The order and the
+delays are the same: a torque computed from a sample acts one control step later.
 """
 
 from __future__ import annotations
@@ -14,7 +14,6 @@ from typing import NamedTuple
 
 from costeer.base import array as xp
 from costeer.base.array import Flag, Real, compiled
-from costeer.base.integrate import rk4
 from costeer.controller import inference
 from costeer.controller import step as controller
 from costeer.controller.signals import Signals
@@ -34,16 +33,12 @@ from costeer.loop.step import (
     plant_step,
 )
 from costeer.plant import world
-from costeer.plant.parameters import CarParameters, ColumnParameters, holding_stiffness
+from costeer.plant.parameters import holding_stiffness
 from costeer.plant.road import cruising_lane, lane_centre
-from costeer.plant.steering import ColumnState, aligning_torque, motor_torque
+from costeer.plant.steering import ColumnState
 from costeer.plant.vehicle import (
-    VehicleInput,
     drive_command,
-    front_lateral_force,
-    vehicle_rate,
 )
-from costeer.plant.world import WorldState
 from costeer.sensing.measurement import Measurement
 from costeer.sensing.sensors import HeadTracker, measure
 
@@ -117,28 +112,6 @@ class PersonHeld(NamedTuple):
     grip: Real
     torque_command: Real
     drive_command: Real
-
-
-class WheelInput(NamedTuple):
-    """What a real wheel says at a plant step, and what it is made of.
-
-    Attributes:
-        steering_wheel_angle: [rad].
-        steering_wheel_rate: [rad/s].
-        driver_torque: Measured or observed [N·m].
-        damping: Of the device by itself [N·m·s/rad].
-        friction: Of the device by itself [N·m].
-    """
-
-    steering_wheel_angle: Real
-    steering_wheel_rate: Real
-    driver_torque: Real
-    damping: Real
-    friction: Real
-
-
-RENDERED_SMOOTHING = 0.1
-"""Rate at which rendered friction has 76 % of its size [rad/s]: a sign would buzz."""
 
 
 @compiled
@@ -352,72 +325,3 @@ def hands_step(
         dt=DT / parameters.plant_steps,
     )
     return PersonMotion(plant=plant_step(motion.plant, fixed), before=motion.before)
-
-
-@compiled
-def rendered_torque(
-    car: CarParameters,
-    column: ColumnParameters,
-    state: WorldState,
-    wheel: WheelInput,
-) -> Real:
-    """What a real wheel must give besides the driver, for Eq. (4) to be felt [N·m].
-
-    Guidance and self-aligning torque, the pull towards straight ahead, and as much
-    damping and friction as the device itself lacks; it cannot take any away.
-
-    Args:
-        car: Its tyres give the self-aligning torque.
-        column: That is to be felt.
-        state: Of the world, with the device's angle.
-        wheel: The device's motion and what it is made of.
-    """
-    angle, rate = wheel.steering_wheel_angle, wheel.steering_wheel_rate
-    motion = VehicleInput(
-        car=car, road_wheel_angle=angle / car.steering_ratio, drive_command=0.0
-    )
-    tyres = aligning_torque(car, front_lateral_force(state.vehicle, motion))
-    damping = xp.maximum(column.damping - wheel.damping, 0.0) * rate
-    friction = xp.maximum(column.friction - wheel.friction, 0.0)
-    dry = friction * xp.tanh(rate / RENDERED_SMOOTHING)
-    return state.column.motor_torque + tyres - column.stiffness * angle - damping - dry
-
-
-@compiled
-def wheel_step(
-    parameters: LoopParameters,
-    motion: PersonMotion,
-    held: PersonHeld,
-    wheel: WheelInput,
-) -> tuple[PersonMotion, Real]:
-    """World one plant step later with the angle of a real wheel, and its torque [N·m].
-
-    The car has run through the step with the wheel half-way between its last angle
-    and this one.
-    """
-    car, column = parameters.car, parameters.column
-    dt = DT / parameters.plant_steps
-    state = motion.plant.world
-    middle = (state.column.steering_wheel_angle + wheel.steering_wheel_angle) / 2.0
-    vehicle_input = VehicleInput(
-        car=car,
-        road_wheel_angle=middle / car.steering_ratio,
-        drive_command=held.drive_command,
-    )
-    moved = WorldState(
-        vehicle=rk4(vehicle_rate, state.vehicle, vehicle_input, dt),
-        column=ColumnState(
-            steering_wheel_angle=wheel.steering_wheel_angle,
-            steering_wheel_rate=wheel.steering_wheel_rate,
-            motor_torque=motor_torque(
-                column, state.column.motor_torque, held.torque_command, dt
-            ),
-        ),
-    )
-    plant = PlantMotion(
-        world=moved,
-        arm=motion.plant.arm,
-        muscles=motion.plant.muscles + wheel.driver_torque,
-    )
-    torque = rendered_torque(car, column, moved, wheel)
-    return PersonMotion(plant=plant, before=motion.before), torque

@@ -17,14 +17,13 @@ from costeer.base.packing import leaf_names, pack, packed, unpack
 from costeer.loop.person import (
     PersonHeld,
     PersonInput,
-    WheelInput,
     control,
     counted_from_here,
     hands_step,
     initial_motion,
     initial_state,
-    wheel_step,
 )
+from costeer.loop.real_wheel import WheelInput, wheel_step
 from costeer.loop.rows import ROW_COLUMNS, row
 from costeer.loop.step import LoopParameters
 from costeer.sensing.torque_observer import (

@@ -13,7 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from costeer.base.packing import leaf_names
-from costeer.loop.person import PersonInput, WheelInput, initial_motion
+from costeer.loop.person import PersonInput, initial_motion
+from costeer.loop.real_wheel import WheelInput
 from costeer.loop.realtime import (
     NOTHING_GIVEN,
     ObserverMemory,

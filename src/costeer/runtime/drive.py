@@ -15,12 +15,13 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from costeer.runtime.driving import Links
 from costeer.runtime.frame import FAULTS, FRAME_COLUMNS, PAUSED, PLACE, STALLED
+from costeer.runtime.head.process import run_head_process
+from costeer.runtime.links import Links
 from costeer.runtime.process import run_realtime
 from costeer.runtime.recorder import Recorder, drive_metadata
 from costeer.runtime.setup import DriveSetup, check_drive, drive_parameters
-from costeer.runtime.shared import close_shared, make_shared
+from costeer.runtime.shared import Shared, close_shared, make_shared, open_shared
 from costeer.runtime.stream import (
     Marker,
     RecordStream,
@@ -52,6 +53,26 @@ class Listener(NamedTuple):
     marker: Callable[[Marker], None]
 
 
+class MailboxSink:
+    """Takes readings of the head to the mailbox; it can be sent to a process.
+
+    Args:
+        memory: Name of the shared memory.
+    """
+
+    def __init__(self, memory: str) -> None:
+        self._memory = memory
+        self._shared: Shared | None = None
+
+    def put(self, time: float, head_yaw: float, valid: bool) -> None:
+        """Keep the newest reading; `HeadSink` says what it is."""
+        if self._shared is None:
+            self._shared = open_shared(self._memory)
+        self._shared.mailbox.put(
+            head_yaw=head_yaw, head_valid=float(valid), head_time=time
+        )
+
+
 class Drive:
     """Real-time process, watchdog and network, and the record they leave.
 
@@ -81,6 +102,7 @@ class Drive:
         self._recorder: Recorder | None = None
         self._closing = threading.Event()
         self._stopping = threading.Event()
+        self._head_stop = self._context.Event()
         self._lock = threading.Lock()
         self._told_stalled = False
         self.priority = ""
@@ -97,16 +119,20 @@ class Drive:
         self._live()
         links = Links(self.shared.memory.name, self._far_commands, self._far_wake)
         realtime = self._spawn(run_realtime, self.setup, links)
-        self._thread(self._listen)
-        self.priority = self._await_ready(realtime)
-        watched = Watched(
-            self.shared.memory.name, int(realtime.pid or 0), self.setup.wheel
-        )
+        watched = Watched(self.shared.memory.name, self.pid, self.setup.wheel)
         self._spawn(run_watchdog, watched)
+        self._thread(self._listen)
         if self.setup.intention == "network":
-            absent = () if self.setup.head else ("head_yaw",)
+            absent = ("head_yaw",) if self.setup.head is None else ()
             road = drive_parameters(self.setup).road
             self._spawn(run_network, self.shared.memory.name, road, absent)
+        self.priority = self._await_ready(realtime)
+        self._await_helper("watching", "watchdog")
+        if self.setup.intention == "network":
+            self._await_helper("reading", "intention network")
+        if self.setup.head is not None:
+            sink = MailboxSink(self.shared.memory.name)
+            self._spawn(run_head_process, self.setup.head, sink, self._head_stop)
         self._begin_record()
         self._thread(self._hear, realtime)
 
@@ -139,6 +165,18 @@ class Drive:
             "this computer lacks"
         )
 
+    def _await_helper(self, flag: str, name: str) -> None:
+        """No trial begins before watchdog and network are there."""
+        deadline = time.perf_counter() + START_PATIENCE
+        while self.shared.mailbox.get(flag) < 0.5:
+            if time.perf_counter() > deadline:
+                self.stop()
+                raise ValueError(
+                    f"the {name} did not start; run `costeer doctor` to see what this "
+                    "computer lacks"
+                )
+            time.sleep(0.01)
+
     def stop(self) -> None:
         """End everything; the record is made whole. May be called twice."""
         if self._stopping.is_set():
@@ -150,6 +188,7 @@ class Drive:
             self._processes[0].join(STOP_PATIENCE)
         self._finish_record()
         self._closing.set()
+        self._head_stop.set()
         for process in self._processes:
             process.terminate()
         for process in self._processes:
@@ -159,6 +198,11 @@ class Drive:
         for end in (self._commands, self._wake, self._far_wake):
             end.close()
         close_shared(self.shared, unlink=True)
+
+    @property
+    def pid(self) -> int:
+        """Number of the real-time process."""
+        return int(self._processes[0].pid or 0)
 
     # What comes in
 

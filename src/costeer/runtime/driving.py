@@ -8,12 +8,10 @@ for comes through a pipe that is looked at once in a control step.
 from __future__ import annotations
 
 import math
-import socket
 import time
 from collections.abc import Callable
 from contextlib import suppress
-from multiprocessing.connection import Connection
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -33,6 +31,7 @@ from costeer.runtime.frame import (
     WAITING,
     WHEEL_LOST,
 )
+from costeer.runtime.links import Links
 from costeer.runtime.setup import (
     DriveSetup,
     drive_parameters,
@@ -41,7 +40,13 @@ from costeer.runtime.setup import (
 )
 from costeer.runtime.shared import Shared
 from costeer.runtime.tunables import TUNABLES, checked_value, tunable_named
-from costeer.runtime.wheels.interface import WheelLost, WheelReading
+from costeer.runtime.wheels.calibration import WheelCalibration
+from costeer.runtime.wheels.interface import (
+    Wheel,
+    WheelDescription,
+    WheelLost,
+    WheelReading,
+)
 from costeer.runtime.wheels.registry import open_wheel
 from costeer.study.conditions import CONDITION_NAMES, condition
 
@@ -70,20 +75,6 @@ _ANGLE = ROW_COLUMNS.index("steering_wheel_angle")
 _APPEARED = ROW_COLUMNS.index("event")
 
 
-class Links(NamedTuple):
-    """What ties the process to the others; it can be sent to a spawned one.
-
-    Attributes:
-        memory: Name of the shared memory.
-        commands: Both ways: tuples of a word and its values.
-        wake: A byte is sent for every frame.
-    """
-
-    memory: str
-    commands: Connection
-    wake: socket.socket
-
-
 class Driving:
     """The state of a drive and its two steps.
 
@@ -91,15 +82,26 @@ class Driving:
         setup: Of the drive.
         links: To the others.
         shared: Memory of the drive.
+        clock: Time that all processes share [s]; a test has its own.
+        opener: Opens a wheel; a test has its own.
 
     Raises:
         ValueError: If the drive cannot begin.
         OSError: If the wheel cannot be opened.
     """
 
-    def __init__(self, setup: DriveSetup, links: Links, shared: Shared) -> None:
+    def __init__(
+        self,
+        setup: DriveSetup,
+        links: Links,
+        shared: Shared,
+        clock: Callable[[], float] = time.perf_counter,
+        opener: Callable[[WheelDescription, WheelCalibration], Wheel] = open_wheel,
+    ) -> None:
         self._setup = setup
         self._links = links
+        self._clock = clock
+        self._opener = opener
         self._mailbox, self._frames = shared.mailbox, shared.frames
         self._trace = shared.trace
         self._cabin = Cabin(setup, self._opened())
@@ -117,12 +119,12 @@ class Driving:
         self._last_event = 0.0
         links.wake.setblocking(False)
 
-    def _opened(self) -> Any:  # Any: Wheel or None, whatever the registry opens
+    def _opened(self) -> Wheel | None:
         """The wheel of the setup, open; None for virtual hands."""
         wheel, calibration = self._setup.wheel, self._setup.calibration
         if wheel is None or calibration is None:
             return None
-        return open_wheel(wheel, calibration)
+        return self._opener(wheel, calibration)
 
     def warm_up(self) -> None:
         """Compile everything before the clock runs, then begin anew."""
@@ -149,7 +151,7 @@ class Driving:
         Args:
             lateness: Largest since the last control step [s].
         """
-        start = time.perf_counter()
+        start = self._clock()
         self._mailbox.put(heartbeat=start)
         self._hear()
         self._look_around(start)
@@ -158,7 +160,7 @@ class Driving:
             self._after(row)
         else:
             row = self._cabin.memory.row
-        self._compute_time = time.perf_counter() - start
+        self._compute_time = self._clock() - start
         self._tell(row, lateness)
 
     def _controls(self, now: float) -> Controls:
@@ -224,8 +226,8 @@ class Driving:
             self._cabin.fade,
             self._cabin.hands.intended_angle,
             box.get("input_sequence"),
-            time.perf_counter() if reading is None else reading.time,
-            time.perf_counter(),
+            self._clock() if reading is None else reading.time,
+            self._clock(),
             self._compute_time,
             lateness,
             self._cabin.value_of(TUNABLES[0]),
@@ -248,7 +250,11 @@ class Driving:
             self._let_go()
             self._cabin.change_wheel(None)
             self._break_off(WHEEL_LOST)
-        self._mailbox.put(heartbeat=time.perf_counter())
+        now = self._clock()
+        self._mailbox.put(heartbeat=now)
+        reading = self._cabin.reading
+        if moving and reading is not None and now - reading.time > WHEEL_PATIENCE:
+            self._break_off(SENSOR_STALE)
         if moving:
             self._put_trace(late)
 
@@ -276,9 +282,6 @@ class Driving:
             silence = now - self._mailbox.get("page_time")
             if silence > PAGE_PATIENCE:
                 self._break_off(BROWSER_LOST)
-        reading = self._cabin.reading
-        if reading is not None and now - reading.time > WHEEL_PATIENCE:
-            self._break_off(SENSOR_STALE)
 
     def _break_off(self, fault: int) -> None:
         """Pause for a fault; the torque ends at once, the record is kept."""
@@ -341,7 +344,7 @@ class Driving:
             self._cabin.change_wheel(self._opened())
             self._cabin.advance(False, True)
         finally:
-            self._mailbox.put(heartbeat=time.perf_counter(), armed=1.0)
+            self._mailbox.put(heartbeat=self._clock(), armed=1.0)
 
     def _do_pause(self, why: str) -> None:
         if self._run_state == RUNNING:

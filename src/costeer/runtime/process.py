@@ -18,7 +18,8 @@ from costeer.runtime.clock import (
     own_core,
     raise_priority,
 )
-from costeer.runtime.driving import Driving, Links
+from costeer.runtime.driving import Driving
+from costeer.runtime.links import Links
 from costeer.runtime.setup import PLANT_DT, PLANT_STEPS, DriveSetup
 from costeer.runtime.shared import Shared, close_shared, open_shared
 

@@ -25,10 +25,11 @@ def drive_metadata(setup: DriveSetup) -> dict[str, object]:
     hands = "virtual hands" if setup.wheel is None else setup.wheel.name
     return {
         **described,
+        "participant": setup.participant,
         "driver": f"person, {hands}",
         "driver_torque_source": torque_source(setup),
         "intention_source": setup.intention,
-        "head_tracker": setup.head,
+        "head_tracker": None if setup.head is None else setup.head.tracker.kind,
     }
 
 

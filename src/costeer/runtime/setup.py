@@ -12,6 +12,7 @@ from costeer.drivers.driver import DriverParameters
 from costeer.loop.scenario import TrialSetup, loop_parameters
 from costeer.loop.step import DT, LoopParameters
 from costeer.methods.registry import METHODS, method_named
+from costeer.runtime.head.calibration import HeadCalibration
 from costeer.runtime.wheels.calibration import WheelCalibration
 from costeer.runtime.wheels.interface import WheelDescription
 from costeer.study.conditions import Condition, condition
@@ -38,7 +39,8 @@ class DriveSetup(NamedTuple):
         intention: One of `INTENTION_SOURCES`.
         keeps_speed: Whether the foot keeps the speed while no pedal is pressed.
         needs_page: Whether the drive pauses when no page looks on.
-        head: Whether a head tracker is there.
+        head: Tracker and calibration of the head; None without one.
+        participant: Pseudonym of who drives.
     """
 
     trial: TrialSetup
@@ -47,7 +49,8 @@ class DriveSetup(NamedTuple):
     intention: str = "network"
     keeps_speed: bool = True
     needs_page: bool = True
-    head: bool = False
+    head: HeadCalibration | None = None
+    participant: str = "1"
 
 
 def check_drive(setup: DriveSetup) -> None:

@@ -72,6 +72,14 @@ class Reader:
     def _new_memory(self) -> WavefrontState:
         return initial_state(self._weights, self._absent)
 
+    def warm_up(self) -> None:
+        """Compile, or load what was compiled, before the first frame."""
+        advance(
+            self._weights,
+            self._new_memory(),
+            IntentionSample(*([math.nan] * len(_SIGNALS))),
+        )
+
     def read(self, frame: NDArray[np.float64]) -> float:
         """Verdict after one more frame; NaN before the window is full [-].
 
@@ -89,7 +97,9 @@ def run_network(memory: str, road: RoadParameters, absent: tuple[str, ...]) -> N
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     shared = open_shared(memory)
     reader = Reader(road, absent)
+    reader.warm_up()
     next_frame = shared.frames.written
+    shared.mailbox.put(reading=1.0)
     try:
         while time.perf_counter() - shared.mailbox.get("server_time") < SERVER_PATIENCE:
             next_frame, frames = shared.frames.since(next_frame)

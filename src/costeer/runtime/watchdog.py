@@ -17,7 +17,7 @@ from typing import NamedTuple
 from costeer.runtime.clock import raise_priority
 from costeer.runtime.shared import Mailbox, close_shared, open_shared
 from costeer.runtime.wheels.interface import WheelDescription
-from costeer.runtime.wheels.registry import emergency_stop
+from costeer.runtime.wheels.registry import emergency_stop, prepare_stop
 
 PATIENCE = 0.08
 """A heartbeat older than this is none [s]: acting takes the rest of 100 ms."""
@@ -52,9 +52,12 @@ def stands_still(mailbox: Mailbox, now: float) -> bool:
 def run_watchdog(watched: Watched) -> None:
     """Look until there is nothing left to look after: target of a spawned process."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    if watched.wheel is not None:
+        prepare_stop(watched.wheel)
     raise_priority(level=70)
     shared = open_shared(watched.memory)
     mailbox = shared.mailbox
+    mailbox.put(watching=1.0)
     try:
         while not orphaned(mailbox, time.perf_counter()):
             if stands_still(mailbox, time.perf_counter()):

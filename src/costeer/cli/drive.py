@@ -1,0 +1,179 @@
+"""`costeer drive`: a person at the wheel, in the browser."""
+
+from __future__ import annotations
+
+from contextlib import suppress
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from costeer.cli.console import note
+from costeer.cli.units import parse_speed
+
+if TYPE_CHECKING:
+    from starlette.types import ASGIApp
+
+    from costeer.export.lsl import TrialOutlet
+    from costeer.web.drive import DriveOnPages
+    from costeer.web.security import Access
+    from costeer.web.serving import Running
+
+
+def drive(
+    condition: Annotated[
+        str, typer.Option(help="manual, or strong or weak with a duration.")
+    ] = "strong-normal",
+    method: Annotated[str, typer.Option(help="Guidance, unless manual.")] = "ibhs",
+    record: Annotated[
+        Path | None, typer.Option(help="Record to write, FILE.parquet.")
+    ] = None,
+    wheel: Annotated[
+        str,
+        typer.Option(
+            help="auto (a wheel if there is a calibrated one), keyboard, gamepad, "
+            "simulated, a number of `costeer wheel list`, or can:CHANNEL."
+        ),
+    ] = "auto",
+    head: Annotated[
+        str,
+        typer.Option(
+            help="none, calibrated (as `costeer head calibrate` left it), webcam[:N or "
+            "FILE], lsl:NAME or opentrack[:PORT]."
+        ),
+    ] = "none",
+    intention: Annotated[
+        str,
+        typer.Option(help="What starts a lane change: network, indicator or off."),
+    ] = "network",
+    participant: Annotated[
+        str, typer.Option(help="Pseudonym; picks the calibration of the head.")
+    ] = "1",
+    seed: Annotated[int, typer.Option(help="Of the leaders.")] = 1,
+    length: Annotated[float, typer.Option(help="Of the course [m].")] = 8000.0,
+    speed: Annotated[
+        float,
+        typer.Option(
+            parser=parse_speed,
+            metavar="SPEED",
+            help="At the start [m/s], or with its unit: 70km/h.",
+        ),
+    ] = 70 / 3.6,
+    car: Annotated[str, typer.Option(help="default, compact or large.")] = "default",
+    events: Annotated[
+        bool, typer.Option("--events/--no-events", help="Leaders to overtake.")
+    ] = True,
+    cruise: Annotated[
+        bool,
+        typer.Option(
+            "--cruise/--no-cruise", help="Keep the speed while no pedal is pressed."
+        ),
+    ] = True,
+    signals: Annotated[
+        bool,
+        typer.Option("--signals/--no-signals", help="Signals on the driver's page."),
+    ] = True,
+    lsl: Annotated[
+        bool, typer.Option("--lsl", help="Send state and markers to LSL.")
+    ] = False,
+    port: Annotated[int, typer.Option(help="Of the page; 0 takes any free.")] = 8700,
+    host: Annotated[
+        str, typer.Option(help="To listen on; others than this computer need a token.")
+    ] = "127.0.0.1",
+    browser: Annotated[
+        bool, typer.Option("--browser/--no-browser", help="Open the page.")
+    ] = True,
+) -> None:
+    """Drive by yourself: wheel, gamepad or keyboard, in the browser. Ctrl-C ends it.
+
+    Example:
+        costeer drive
+        costeer drive --condition weak-gentle --record out/me.parquet
+    """
+    from costeer.cli.devices import chosen_head, chosen_wheel, pseudonym_number
+    from costeer.loop.scenario import TrialSetup
+    from costeer.runtime.setup import DriveSetup, trial_setup
+    from costeer.runtime.stream import check_free
+    from costeer.web.drive import DriveOnPages, PageOptions
+    from costeer.web.security import access_for
+
+    if record is not None:
+        check_free(record)
+    trial = TrialSetup(
+        participant=pseudonym_number(participant),
+        seed=seed,
+        length=length,
+        speed=speed,
+        car=car,
+        events=events,
+    )
+    chosen = chosen_wheel(wheel)
+    setup = DriveSetup(
+        trial=trial_setup(condition, method, trial),
+        wheel=chosen.description,
+        calibration=chosen.calibration,
+        intention=intention,
+        keeps_speed=cruise,
+        head=chosen_head(head, participant),
+        participant=participant,
+    )
+    options = PageOptions(input=chosen.input, show_signals=signals)
+    access = access_for(host, port)
+    session = DriveOnPages(setup, record, options)
+    outlet = outlet_of(session) if lsl else None
+    try:
+        run_drive(session, access, browser)
+    finally:
+        session.stop()
+        if outlet is not None:
+            outlet.close()
+    tell_end(session)
+
+
+def outlet_of(session: DriveOnPages) -> TrialOutlet:
+    """Send the session's frames and markers to Lab Streaming Layer, too."""
+    from costeer.export.lsl import TrialOutlet
+    from costeer.loop.columns import COLUMNS_BY_NAME
+    from costeer.runtime.frame import FRAME_COLUMNS
+
+    units = {
+        name: COLUMNS_BY_NAME[name].unit if name in COLUMNS_BY_NAME else "-"
+        for name in FRAME_COLUMNS
+    }
+    outlet = TrialOutlet(units)
+    session.also(
+        lambda frame: outlet.push(frame.tolist()),
+        lambda marker: outlet.mark(str(marker["kind"]), str(marker["text"])),
+    )
+    return outlet
+
+
+def run_drive(session: DriveOnPages, access: Access, browser: bool) -> None:
+    """Start the processes, serve the pages until Ctrl-C or the experimenter's stop."""
+    from costeer.web.app import drive_app
+    from costeer.web.serving import open_page, serve
+
+    note("costeer: starting; the very first start compiles for up to a minute")
+    session.drive.start()
+
+    def make_app(taken: Access) -> ASGIApp:
+        return drive_app(session, taken)
+
+    def announce(running: Running) -> None:
+        session.on_stop = running.stop
+        typer.echo(f"drive at:        {running.address}")
+        typer.echo(f"experimenter at: {running.experimenter_address}")
+        note(f"costeer: real-time process: {session.drive.priority}; Ctrl-C ends")
+        if browser:
+            open_page(running.address)
+
+    with suppress(KeyboardInterrupt):
+        serve(make_app, access, announce)
+
+
+def tell_end(session: DriveOnPages) -> None:
+    """Print what is left of the drive."""
+    for line in session.account():
+        note(f"costeer: {line}")
+    for path in session.drive.kept:
+        typer.echo(path)

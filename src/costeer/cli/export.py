@@ -1,0 +1,68 @@
+"""`costeer export`: a trial record in the format of other programs."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+if TYPE_CHECKING:
+    from costeer.loop.record import TrialRecord
+
+FORMATS = {"mcap": ".mcap", "parquet": ".parquet"}
+"""What a record can be written as, and how such a file's name ends."""
+
+
+def export(
+    file: Annotated[
+        Path, typer.Argument(help="Trial record, table, or stream of a cut-off drive.")
+    ],
+    out: Annotated[Path, typer.Option(help="File to write.")],
+    to: Annotated[str, typer.Option(help="Format: mcap or parquet.")] = "mcap",
+) -> None:
+    """Write a trial record in the format of other programs.
+
+    MCAP with Protobuf messages opens in Foxglove, PlotJuggler and rerun. Parquet makes
+    a trial record of the stream that a drive left which was cut off.
+
+    Example:
+        costeer export out/trial.parquet --to mcap --out out/trial.mcap
+        costeer export out/drive.arrow --to parquet --out out/saved.parquet
+    """
+    _check_target(file, out, to)
+    from costeer.loop.record import read_recording
+
+    record = read_recording(file)
+    out.parent.mkdir(parents=True, exist_ok=True)
+    try:
+        _write(record, out, to)
+    except ValueError as error:
+        raise ValueError(f"{file}: {error}") from error
+    typer.echo(out)
+
+
+def _check_target(file: Path, out: Path, to: str) -> None:
+    """Refuse unknown formats, and to write over a record.
+
+    Raises:
+        ValueError: If so.
+    """
+    if to not in FORMATS:
+        raise ValueError(f"--to is {to}; choose one of {', '.join(FORMATS)}")
+    if out.suffix.lower() != FORMATS[to]:
+        raise ValueError(f"--out is {out}; give a name that ends in {FORMATS[to]}")
+    if out.exists() and (to == "parquet" or (file.exists() and out.samefile(file))):
+        raise ValueError(f"--out is {out}, which exists; choose another name")
+
+
+def _write(record: TrialRecord, out: Path, to: str) -> None:
+    """Write the record in a format."""
+    if to == "parquet":
+        from costeer.loop.record import write_record
+
+        write_record(out, record)
+        return
+    from costeer.export.mcap import write_mcap
+
+    write_mcap(record, out)

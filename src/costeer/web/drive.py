@@ -1,0 +1,278 @@
+"""A drive as its pages see it: what they are told, and what they may ask."""
+
+from __future__ import annotations
+
+import statistics
+from collections import deque
+from collections.abc import Callable
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from costeer.base.packing import packed
+from costeer.methods.registry import METHODS, method_named
+from costeer.plant.parameters import wheelbase
+from costeer.runtime.drive import Drive, Listener
+from costeer.runtime.frame import FRAME_COLUMNS, PLACE
+from costeer.runtime.setup import PLANT_DT, DriveSetup, drive_parameters
+from costeer.runtime.stream import Marker
+from costeer.runtime.tunables import TUNABLES, checked_value, place_of, tunable_named
+from costeer.study.conditions import CONDITION_NAMES, condition
+from costeer.web.messages import (
+    ChooseCondition,
+    ChooseMethod,
+    Indicator,
+    Input,
+    Latency,
+    Message,
+    Pause,
+    Restart,
+    Resume,
+    Set,
+    Start,
+    Stop,
+)
+from costeer.web.session import Broadcast, Role
+
+FRAME_RATE = 60
+"""Frames a second."""
+
+MOST_DRIVERS = 1
+"""Pages that may drive at once."""
+
+KEPT_LATENCIES = 36_000
+"""Latencies kept for the account at the end: ten minutes of frames."""
+
+
+class PageOptions(NamedTuple):
+    """What pages show.
+
+    Attributes:
+        input: "keyboard", "gamepad" or "wheel".
+        show_signals: Whether a driver's page may show the live signals.
+    """
+
+    input: str = "keyboard"
+    show_signals: bool = True
+
+
+class DriveOnPages:
+    """The session of a drive; satisfies `DriveSession`.
+
+    Args:
+        setup: Of the drive.
+        record: File to write, or None.
+        options: What pages show.
+
+    Raises:
+        ValueError: If the drive cannot begin.
+    """
+
+    def __init__(
+        self, setup: DriveSetup, record: Path | None, options: PageOptions
+    ) -> None:
+        self.broadcast = Broadcast()
+        self.latencies: deque[float] = deque(maxlen=KEPT_LATENCIES)
+        self.on_stop: Callable[[], None] = lambda: None
+        self._others: list[Listener] = []
+        self._late = Lateness()
+        self._options = options
+        self._num_drivers = 0
+        self._condition = setup.trial.condition
+        self._method = _shown_method(setup.trial.method)
+        values = packed(drive_parameters(setup))
+        self._values = {t.name: float(values[place_of(t)]) for t in TUNABLES}
+        self.drive = Drive(setup, record, Listener(self._tell, self._mark))
+
+    def also(
+        self,
+        frame: Callable[[NDArray[np.float64]], None],
+        marker: Callable[[Marker], None],
+    ) -> None:
+        """Tell frames and markers to someone else, too."""
+        self._others.append(Listener(frame, marker))
+
+    def stop(self) -> None:
+        """End the drive; its record is made whole."""
+        self.drive.stop()
+
+    def _tell(self, frame: NDArray[np.float64]) -> None:
+        """Pass a frame on to all pages."""
+        self._late.take(frame)
+        for other in self._others:
+            other.frame(frame)
+        self.broadcast.send_frame(frame.astype("<f8", copy=False).tobytes())
+
+    def _mark(self, marker: Marker) -> None:
+        """Pass a marker on, and what it changed."""
+        for other in self._others:
+            other.marker(marker)
+        self.broadcast.send({"type": "marker", **marker})
+        kind, text = marker["kind"], str(marker["text"])
+        if kind == "condition":
+            self._condition = text
+            self._follow_condition()
+        elif kind == "method":
+            self._method = text
+            self._follow_condition()
+        elif kind == "gain":
+            name, _, change = text.partition(" ")
+            self._values[name] = float(change.split(" -> ")[1].split()[0])
+        else:
+            return
+        self.broadcast.send(self._state())
+
+    def _follow_condition(self) -> None:
+        """Strength and duration as the condition sets them."""
+        chosen = condition(self._condition)
+        assists = METHODS[self._method].assists
+        self._values["strength_factor"] = chosen.strength_factor if assists else 0.0
+        if chosen.change_duration == chosen.change_duration:
+            self._values["change_duration"] = chosen.change_duration
+
+    def _state(self) -> dict[str, object]:
+        """What an experimenter has chosen."""
+        return {
+            "type": "state",
+            "condition": self._condition,
+            "method": self._method,
+            "tunables": self._tunables(),
+        }
+
+    def _tunables(self) -> list[dict[str, object]]:
+        return [
+            {
+                "name": each.name,
+                "unit": each.unit,
+                "low": each.low,
+                "high": each.high,
+                "value": self._values[each.name],
+                "label": each.label,
+            }
+            for each in TUNABLES
+        ]
+
+    def hello(self, role: Role) -> dict[str, object]:
+        """The first message to a page: what the numbers of a frame are, and choices."""
+        parameters = drive_parameters(self.drive.setup)
+        road, car = parameters.road, parameters.car
+        return {
+            "mode": "drive",
+            "columns": list(FRAME_COLUMNS),
+            "rate": FRAME_RATE,
+            "road": road._asdict(),
+            "car": {
+                "width": car.width,
+                "wheelbase": wheelbase(car),
+                "steering_ratio": car.steering_ratio,
+            },
+            "conditions": list(CONDITION_NAMES),
+            "condition": self._condition,
+            "methods": list(METHODS),
+            "method": self._method,
+            "tunables": self._tunables() if role == "experimenter" else [],
+            "input": self._options.input,
+            "show_signals": self._options.show_signals or role == "experimenter",
+            "torque_limit": parameters.controller.actuation.torque_limit,
+        }
+
+    def apply(self, role: Role, message: Message) -> dict[str, object] | None:
+        """Do what a page asks.
+
+        Raises:
+            ValueError: If it cannot be done.
+        """
+        if isinstance(message, Input):
+            if role == "driver" or self._num_drivers == 0:
+                self.drive.press(*message)
+        elif isinstance(message, Latency):
+            self.latencies.extend(message.values)
+        elif isinstance(message, Start | Resume | Restart):
+            self.drive.send(type(message).__name__.lower())
+        elif isinstance(message, Pause):
+            self.drive.send("pause", f"by the {role}")
+        elif isinstance(message, Indicator):
+            self.drive.send("indicator", message.side)
+        else:
+            self._choose(message)
+        return None
+
+    def _choose(self, message: Message) -> None:
+        """What only the experimenter may ask.
+
+        Raises:
+            ValueError: If name or value cannot be.
+        """
+        if isinstance(message, Set):
+            value = checked_value(tunable_named(message.name), message.value)
+            self.drive.send("set", message.name, value)
+        elif isinstance(message, ChooseCondition):
+            self.drive.send("condition", condition(message.name).name)
+        elif isinstance(message, ChooseMethod):
+            self.drive.send("method", method_named(message.name).name)
+        elif isinstance(message, Stop):
+            self.drive.send("pause", "stopped by the experimenter")
+            self.on_stop()
+
+    def client_joined(self, role: Role) -> None:
+        """Count the pages that drive.
+
+        Raises:
+            ValueError: If another page drives already.
+        """
+        if role != "driver":
+            return
+        if self._num_drivers >= MOST_DRIVERS:
+            raise ValueError(
+                "another page drives already; close it, or open the experimenter's "
+                "address to look on"
+            )
+        self._num_drivers += 1
+
+    def client_left(self, role: Role) -> None:
+        """Forget a page; a drive without one pauses by itself."""
+        if role == "driver":
+            self._num_drivers -= 1
+
+    def account(self) -> list[str]:
+        """How late everything was, in words."""
+        told = [self._late.told()] if self._late.num_frames else []
+        if len(self.latencies) > 1:
+            late = statistics.quantiles(self.latencies, n=20)
+            told.append(
+                f"wheel to page: median {statistics.median(self.latencies):.1f} ms, "
+                f"95th percentile {late[-1]:.1f} ms of {len(self.latencies)} frames"
+            )
+        return told
+
+
+class Lateness:
+    """How late the control steps of a drive were, kept as frames pass by."""
+
+    def __init__(self) -> None:
+        self.num_frames = 0
+        self._num_late = 0
+        self._longest = 0.0
+
+    def take(self, frame: NDArray[np.float64]) -> None:
+        """Count one frame."""
+        late = float(frame[PLACE["lateness"]])
+        self.num_frames += 1
+        self._num_late += late > PLANT_DT
+        self._longest = max(self._longest, late)
+
+    def told(self) -> str:
+        """In words."""
+        share = 100.0 * self._num_late / self.num_frames
+        return (
+            f"{share:.2f} % of {self.num_frames} control steps held a plant step that "
+            f"began more than {1e3 * PLANT_DT:.2f} ms late; the latest "
+            f"{1e3 * self._longest:.1f} ms"
+        )
+
+
+def _shown_method(name: str) -> str:
+    """The method that was asked for; manual driving hides none."""
+    return name if name in METHODS else "ibhs"

@@ -1,0 +1,152 @@
+"""A trial record as the page shows it: a description, and all rows as one block."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from costeer.export.markers import markers_of
+from costeer.loop.columns import COLUMN_NAMES, MODES, TrialRecord, check_time
+from costeer.plant.parameters import CARS, CarParameters, RoadParameters
+
+NEEDED = (
+    "time",
+    "longitudinal_position",
+    "lateral_position",
+    "yaw_angle",
+    "longitudinal_velocity",
+    "steering_wheel_angle",
+)
+"""Columns without which nothing can be shown."""
+
+# Any: the element type differs from column to column.
+Values = NDArray[Any]
+
+
+class Replay(NamedTuple):
+    """What the page is given of a record.
+
+    Attributes:
+        hello: The first message, without `type` and `role`.
+        rows: Little-endian float64, row after row, in the order of hello's columns.
+    """
+
+    hello: dict[str, object]
+    rows: bytes
+
+
+def replay_of(record: TrialRecord, title: str) -> Replay:
+    """A record as the page shows it.
+
+    Args:
+        record: A trial, or any table that has the columns of `NEEDED`.
+        title: What the page is headed with.
+
+    Raises:
+        ValueError: If a needed column is missing or has a value that is not finite,
+            or if time does not increase.
+    """
+    _check(record.columns)
+    names = [name for name in COLUMN_NAMES if name in record.columns]
+    values = [_numbers(name, record.columns[name]) for name in names]
+    rows = np.stack(values, axis=1).astype("<f8")
+    hello = _described(record, title) | {"columns": names}
+    return Replay(hello=hello, rows=rows.tobytes())
+
+
+def _check(columns: Mapping[str, Values]) -> None:
+    """Refuse a record that cannot be shown."""
+    missing = [name for name in NEEDED if name not in columns]
+    if missing:
+        raise ValueError(
+            f"there is no column {', '.join(missing)}; a replay needs "
+            f"{', '.join(NEEDED)}, in SI units"
+        )
+    if len(columns["time"]) < 2:
+        raise ValueError("there are fewer than two rows; a replay needs a stretch")
+    for name in NEEDED:
+        _check_finite(name, _numbers(name, columns[name]))
+    check_time(_numbers("time", columns["time"]))
+
+
+def _check_finite(name: str, values: NDArray[np.float64]) -> None:
+    gaps = np.flatnonzero(~np.isfinite(values))
+    if gaps.size:
+        raise ValueError(
+            f"column {name} is {values[gaps[0]]} in row {gaps[0]}; a replay needs a "
+            "number in every row"
+        )
+
+
+def _numbers(name: str, values: Values) -> NDArray[np.float64]:
+    """A column as floats: modes by their place in `MODES`, what is undefined NaN.
+
+    Raises:
+        ValueError: If it holds text.
+    """
+    if name == "mode" and values.dtype.kind == "U":
+        return _mode_numbers(values)
+    if values.dtype.kind not in "fiub":
+        raise ValueError(f"column {name} holds text; a replay needs numbers")
+    numbers = np.ma.getdata(values).astype(np.float64)
+    numbers[np.ma.getmaskarray(values)] = np.nan
+    return numbers
+
+
+def _mode_numbers(values: Values) -> NDArray[np.float64]:
+    """0 manual, 1 lane keeping, 2 lane changing; NaN for other words."""
+    numbers = np.full(len(values), np.nan)
+    for number, mode in enumerate(MODES):
+        numbers[values == mode] = number
+    return numbers
+
+
+def _described(record: TrialRecord, title: str) -> dict[str, object]:
+    """What the page is told of a record; where it tells nothing, what is usual."""
+    about = record.metadata
+    time = _numbers("time", record.columns["time"])
+    condition, method = about.get("condition", ""), about.get("method", "")
+    return {
+        "mode": "replay",
+        "title": title,
+        "duration": float(time[-1] - time[0]),
+        "markers": [marker._asdict() for marker in markers_of(about)],
+        "rate": float(1.0 / np.median(np.diff(time))),
+        "road": _road(about),
+        "car": _car(about),
+        "conditions": [condition] if condition else [],
+        "condition": condition,
+        "methods": [method] if method else [],
+        "method": method,
+        "tunables": [],
+        "input": "wheel",
+        "show_signals": True,
+        "torque_limit": about.get("torque_limit", 5.0),
+    }
+
+
+def _within(about: Mapping[str, object], name: str) -> Mapping[str, object]:
+    """A part of the configuration that a record keeps; empty if it does not."""
+    configuration = about.get("configuration")
+    part = configuration.get(name) if isinstance(configuration, Mapping) else None
+    return part if isinstance(part, Mapping) else {}
+
+
+def _road(about: Mapping[str, object]) -> dict[str, object]:
+    """The road that was driven on."""
+    known = RoadParameters()._asdict() | dict(_within(about, "road"))
+    return {name: known[name] for name in RoadParameters._fields}
+
+
+def _car(about: Mapping[str, object]) -> dict[str, object]:
+    """The car that was driven."""
+    usual = CARS.get(str(about.get("car")), CarParameters())
+    known: dict[str, Any] = usual._asdict() | dict(_within(about, "car"))
+    return {
+        "width": known["width"],
+        "wheelbase": known["front_distance"] + known["rear_distance"],
+        "steering_ratio": known["steering_ratio"],
+    }

@@ -1,0 +1,29 @@
+"""A head tracker that streams what it is told, as a professional one does."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from uuid import uuid4
+
+import pylsl
+
+
+class FakeOutlet:
+    """An outlet of the lab streaming layer with labels and units."""
+
+    def __init__(self, channels: Sequence[tuple[str, str]]) -> None:
+        """Open it under a name of its own; `channels` are pairs of label and unit."""
+        self.name = f"tracker-{uuid4().hex}"
+        info = pylsl.StreamInfo(
+            self.name, "Gaze", len(channels), 60.0, pylsl.cf_double64, self.name
+        )
+        parent = info.desc().append_child("channels")
+        for label, unit in channels:
+            channel = parent.append_child("channel")
+            channel.append_child_value("label", label)
+            channel.append_child_value("unit", unit)
+        self._outlet = pylsl.StreamOutlet(info)
+
+    def send(self, *sample: float, age: float = 0.0) -> None:
+        """Send a sample that was measured `age` ago [s]."""
+        self._outlet.push_sample(list(sample), pylsl.local_clock() - age)

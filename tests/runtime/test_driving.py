@@ -1,0 +1,302 @@
+"""A drive does what it is told, and stops what must not go on."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+
+import numpy as np
+import pytest
+
+from costeer.runtime.frame import (
+    BROWSER_LOST,
+    ENDED,
+    NO_FAULT,
+    NOT_FINITE,
+    PAUSED,
+    RUNNING,
+    SENSOR_STALE,
+    WAITING,
+    WHEEL_LOST,
+)
+from costeer.runtime.guard import GuardParameters
+from costeer.runtime.setup import DriveSetup
+from costeer.runtime.wheels.simulated import SpringHands
+from tests.runtime.rig import Rig, drive_setup, of, wheel_setup
+
+HANDS = SpringHands(stiffness=6.0, damping=0.6)
+MakeRig = Callable[[DriveSetup], Rig]
+
+
+@pytest.fixture
+def rig() -> Iterator[MakeRig]:
+    made: list[Rig] = []
+
+    def make(setup: DriveSetup) -> Rig:
+        made.append(Rig(setup))
+        return made[-1]
+
+    yield make
+    for each in made:
+        each.close()
+
+
+def test_drive_waits_runs_pauses_and_goes_on_where_it_was(rig: MakeRig) -> None:
+    drive = rig(drive_setup())
+    assert (of(drive.steps(3), "run_state") == WAITING).all()
+    drive.ask("start")
+    ran = drive.steps(30)
+    drive.ask("pause", "by the driver")
+    rested = drive.steps(10)
+    drive.ask("resume")
+    went_on = drive.steps(5)
+    assert (of(ran, "run_state") == RUNNING).all()
+    np.testing.assert_allclose(of(ran, "time"), np.arange(30) / 60.0, atol=1e-12)
+    assert (of(rested, "time") == of(ran, "time")[-1]).all()
+    assert (of(rested, "run_state") == PAUSED).all()
+    np.testing.assert_allclose(of(went_on, "time"), np.arange(30, 35) / 60.0)
+    assert drive.kinds() == ["started", "paused", "resumed"]
+
+
+def test_held_key_changes_the_lane_and_the_car_keeps_its_speed(rig: MakeRig) -> None:
+    drive = rig(drive_setup("manual"))
+    drive.ask("start")
+    drive.shared.mailbox.put(steer=-0.8, steering=1.0)
+    drive.steps(90)
+    drive.shared.mailbox.put(steer=0.8)
+    drive.steps(97)
+    drive.shared.mailbox.put(steer=0.0, steering=0.0)
+    frames = drive.steps(90)
+    assert of(frames, "lane")[-1] == 0.0
+    assert of(frames, "lateral_position")[-1] < -1.75
+    assert of(frames, "longitudinal_velocity")[-1] == pytest.approx(70 / 3.6, abs=0.3)
+
+
+def test_end_of_the_course_ends_the_trial_and_a_restart_begins_anew(
+    rig: MakeRig,
+) -> None:
+    drive = rig(drive_setup(length=100.0))
+    drive.ask("start")
+    frames = drive.steps(330)
+    assert of(frames, "run_state")[-1] == ENDED
+    assert of(frames, "longitudinal_position")[-1] == pytest.approx(100.0, abs=0.4)
+    drive.ask("restart")
+    drive.ask("start")
+    again = drive.steps(3)
+    assert of(again, "longitudinal_position")[0] == 0.0
+    assert drive.kinds() == ["started", "ended", "restarted", "started"]
+
+
+def test_condition_method_and_gain_change_while_driving_and_are_told(
+    rig: MakeRig,
+) -> None:
+    drive = rig(drive_setup())
+    drive.ask("start")
+    drive.steps(2)
+    drive.ask("condition", "weak-gentle")
+    assert of(drive.steps(1), "strength_factor")[-1] == 0.4
+    drive.ask("set", "lateral_error_gain", 2.0)
+    drive.ask("method", "manual")
+    assert of(drive.steps(1), "strength_factor")[-1] == 0.0
+    markers = drive.heard()[1:]
+    assert [m.kind for m in markers] == ["condition", "gain", "method"]
+    assert markers[1].text == "lateral_error_gain 1.5 -> 2 N·m/m"
+    assert markers[0].time == pytest.approx(1 / 60)
+
+
+def test_tuned_gain_acts_and_outlives_a_restart(rig: MakeRig) -> None:
+    setup = drive_setup(initial_offset=0.5)
+    usual, tuned = rig(setup), rig(setup)
+    tuned.ask("set", "lateral_error_gain", 3.0)
+    tuned.ask("restart")
+    for drive in (usual, tuned):
+        drive.ask("start")
+    here, there = usual.steps(10), tuned.steps(10)
+    ratio = of(there, "instructed_torque")[0] / of(here, "instructed_torque")[0]
+    # tau' = K_y e_y + ... with e_y alone at the start; friction compensation besides.
+    assert 1.5 < ratio < 2.1
+
+
+@pytest.mark.parametrize(
+    ("command", "told"),
+    [
+        (("set", "lateral_error_gain", 99.0), "from 0 to 3"),
+        (("set", "mass", 1.0), "cannot be tuned"),
+        (("condition", "strongest"), "strongest"),
+    ],
+)
+def test_bad_command_is_refused_in_words_and_the_drive_goes_on(
+    rig: MakeRig, command: tuple[object, ...], told: str
+) -> None:
+    drive = rig(drive_setup())
+    drive.ask("start")
+    drive.ask(*command)
+    assert (of(drive.steps(3), "run_state") == RUNNING).all()
+    assert [m.text for m in drive.heard() if m.kind == "error" and told in m.text]
+
+
+def test_indicator_asks_for_a_lane_change_to_the_lane_that_is_there(
+    rig: MakeRig,
+) -> None:
+    drive = rig(drive_setup()._replace(intention="indicator"))
+    drive.ask("start")
+    drive.ask("indicator", 1)  # there is no lane on the left
+    drive.steps(30)
+    assert (of(drive.steps(30), "mode") == 1.0).all()
+    drive.ask("indicator", -1)
+    frames = drive.steps(30)
+    assert (of(frames, "mode")[2:] == 2.0).all()
+    assert of(frames, "target_lane")[-1] == 0.0
+    assert of(frames, "indicator")[-1] == -1.0
+
+
+def test_head_counts_only_while_it_was_seen_lately(rig: MakeRig) -> None:
+    drive = rig(drive_setup())
+    drive.ask("start")
+    now = drive.now
+    drive.shared.mailbox.put(head_yaw=-0.4, head_valid=1.0, head_time=now + 60.0)
+    seen = drive.steps(1)
+    drive.shared.mailbox.put(head_time=now - 0.3)
+    stale = drive.steps(1)
+    assert of(seen, "head_yaw_valid")[0] == 1.0
+    assert of(stale, "head_yaw_valid")[0] == 0.0
+    assert of(stale, "head_yaw")[0] == of(seen, "head_yaw")[0] == -0.4
+
+
+def test_verdict_counts_only_while_it_is_fresh(rig: MakeRig) -> None:
+    drive = rig(drive_setup()._replace(intention="network"))
+    drive.ask("start")
+    drive.steps(1)
+    written = float(drive.shared.frames.written)
+    drive.shared.mailbox.put(crossing_probability=0.9, verdict_row=written)
+    frames = drive.steps(10)
+    probability = of(frames, "crossing_probability")
+    assert (probability[:6] == 0.9).all()
+    assert np.isnan(probability[8:]).all()
+
+
+# With a wheel
+
+
+def test_wheel_is_held_in_the_lane_by_the_guidance_and_torque_fades_in(
+    rig: MakeRig,
+) -> None:
+    setup = wheel_setup()
+    drive = rig(setup._replace(trial=setup.trial._replace(initial_offset=0.5)))
+    drive.ask("start")
+    frames = drive.steps(300)
+    fade = of(frames, "fade")
+    assert fade[1] < 0.05
+    assert fade[70] == 1.0
+    assert (np.diff(fade) >= 0.0).all()
+    # Within 0.1 m after 2.7 s with the studies' column, one second more to fade in.
+    assert np.abs(of(frames, "lateral_position")[230:]).max() < 0.15
+
+
+def test_hands_that_turn_the_wheel_are_felt_within_their_torque(rig: MakeRig) -> None:
+    hands = HANDS._replace(amplitude=0.15, period=3.0)
+    drive = rig(wheel_setup("manual", hands=hands))
+    drive.ask("start")
+    frames = drive.steps(240)
+    angle = of(frames, "steering_wheel_angle")[60:]
+    told = of(frames, "driver_torque")[60:]
+    when = of(frames, "time")[60:]
+    assert np.ptp(angle) > 0.1
+    # The observer knows neither the arms nor their phase: it sees what they do.
+    rate = np.gradient(angle, 1 / 60)
+    wanted = hands.amplitude * np.sin(2 * math.pi * (when + 0.03) / hands.period)
+    true = hands.stiffness * (wanted - angle) - hands.damping * rate
+    assert np.corrcoef(true, told)[0, 1] > 0.8
+
+
+def test_stop_fades_out_and_leaves_no_torque(rig: MakeRig) -> None:
+    hands = HANDS._replace(amplitude=0.3)
+    drive = rig(wheel_setup(hands=hands))
+    drive.ask("start")
+    assert np.abs(of(drive.steps(120), "wheel_torque")).max() > 0.3
+    drive.ask("pause", "by the driver")
+    frames = drive.steps(30)
+    torque = np.abs(of(frames, "wheel_torque"))
+    limit = GuardParameters()
+    assert np.abs(np.diff(torque)).max() <= limit.torque_rate_limit / 60 + 1e-9
+    assert of(frames, "fade")[-1] == 0.0
+    assert torque[-1] == 0.0
+
+
+def test_unplugged_wheel_pauses_the_trial_and_says_so(rig: MakeRig) -> None:
+    drive = rig(wheel_setup(unplug_at=0.5))
+    drive.ask("start")
+    frames = drive.steps(60)
+    assert of(frames, "run_state")[-1] == PAUSED
+    assert of(frames, "fault")[-1] == WHEEL_LOST
+    assert of(frames, "time")[-1] == pytest.approx(0.5, abs=0.05)
+    assert "plug it in" in drive.heard()[-1].text
+    # A new one (the same, seen from its own start) is found, and the trial goes on.
+    drive.ask("resume")
+    again = drive.steps(5)
+    assert of(again, "run_state")[-1] == RUNNING
+    assert of(again, "fault")[-1] == NO_FAULT
+
+
+def test_silent_wheel_pauses_the_trial_without_torque_within_100_ms(
+    rig: MakeRig,
+) -> None:
+    drive = rig(wheel_setup(hands=HANDS._replace(amplitude=0.2), freeze_at=1.5))
+    drive.ask("start")
+    frames = drive.steps(120)
+    assert np.abs(of(frames, "wheel_torque")[80:88]).min() > 0.1
+    assert of(frames, "fault")[-1] == SENSOR_STALE
+    assert of(frames, "run_state")[-1] == PAUSED
+    # It stood still at 1.5 s, step 90; six steps are 100 ms.
+    assert (of(frames, "wheel_torque")[96:] == 0.0).all()
+
+
+def test_lost_page_pauses_the_trial(rig: MakeRig) -> None:
+    drive = rig(drive_setup()._replace(needs_page=True))
+    drive.ask("start")
+    drive.steps(10)
+    drive.shared.mailbox.put(page_time=drive.now - 1.1)
+    frames = drive.steps(3)
+    assert of(frames, "run_state")[-1] == PAUSED
+    assert of(frames, "fault")[-1] == BROWSER_LOST
+    drive.alive(60.0)
+    drive.ask("resume")
+    assert of(drive.steps(2), "run_state")[-1] == RUNNING
+
+
+def test_gone_server_ends_the_process(rig: MakeRig) -> None:
+    drive = rig(drive_setup())
+    drive.steps(1)
+    assert not drive.driving.stopping
+    drive.shared.mailbox.put(server_time=drive.now - 6.0)
+    drive.steps(1)
+    assert drive.driving.stopping
+
+
+def test_number_that_is_not_finite_pauses_the_trial_without_torque(
+    rig: MakeRig,
+) -> None:
+    drive = rig(wheel_setup(hands=HANDS._replace(amplitude=0.2)))
+    drive.ask("start")
+    drive.steps(70)
+    drive.driving._cabin.memory.motion[:] = np.nan
+    frames = drive.steps(10)
+    assert of(frames, "run_state")[-1] == PAUSED
+    assert of(frames, "fault")[-1] == NOT_FINITE
+    assert (of(frames, "wheel_torque")[4:] == 0.0).all()
+    drive.ask("resume")
+    drive.steps(1)
+    assert "restart" in drive.heard()[-1].text
+    drive.ask("restart")
+    drive.ask("start")
+    assert np.isfinite(of(drive.steps(5), "lateral_position")).all()
+
+
+def test_trial_does_not_begin_with_a_turned_wheel(rig: MakeRig) -> None:
+    hands = HANDS._replace(amplitude=1.5, period=2.0)
+    drive = rig(wheel_setup(hands=hands))
+    drive.steps(30)
+    drive.ask("start")
+    frames = drive.steps(2)
+    assert of(frames, "run_state")[-1] == WAITING
+    assert "straight" in drive.heard()[-1].text

@@ -1,0 +1,184 @@
+"""The processes of a drive together: they keep time, and none can take another down."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator
+from multiprocessing.shared_memory import SharedMemory
+from pathlib import Path
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from costeer.loop.record import read_record, read_stream
+from costeer.runtime.drive import Drive, Listener
+from costeer.runtime.frame import PLACE, STALLED
+from costeer.runtime.setup import DriveSetup
+from costeer.runtime.stream import Marker
+from costeer.runtime.wheels.simulated import SpringHands
+from tests.runtime.rig import drive_setup, wheel_setup
+
+PATIENCE = 20.0
+"""Of the tests, on a machine that does other things besides [s]."""
+
+needs_posix = pytest.mark.skipif(os.name != "posix", reason="there are no such signals")
+
+
+class Kept:
+    """What a drive has told."""
+
+    def __init__(self) -> None:
+        self.frames: list[NDArray[np.float64]] = []
+        self.markers: list[Marker] = []
+
+    def column(self, name: str) -> NDArray[np.float64]:
+        """A column of all frames so far."""
+        return np.array([frame[PLACE[name]] for frame in self.frames])
+
+    def kinds(self) -> list[object]:
+        """Kinds of all markers so far."""
+        return [marker["kind"] for marker in self.markers]
+
+
+Begin = Callable[[DriveSetup, Path | None], tuple[Drive, Kept]]
+
+
+@pytest.fixture
+def begin() -> Iterator[Begin]:
+    drives: list[Drive] = []
+
+    def make(setup: DriveSetup, record: Path | None) -> tuple[Drive, Kept]:
+        kept = Kept()
+        listener = Listener(
+            lambda frame: kept.frames.append(frame.copy()), kept.markers.append
+        )
+        drives.append(Drive(setup, record, listener))
+        drives[-1].start()
+        return drives[-1], kept
+
+    yield make
+    for drive in drives:
+        drive.stop()
+
+
+def wait_for(fact: Callable[[], object]) -> None:
+    """Wait until something is so."""
+    deadline = time.monotonic() + PATIENCE
+    while not fact():
+        assert time.monotonic() < deadline, "it did not come to pass"
+        time.sleep(0.01)
+
+
+def test_drive_keeps_to_the_clock_with_verdicts_and_leaves_its_record(
+    begin: Begin, tmp_path: Path
+) -> None:
+    setup = drive_setup()._replace(intention="network", needs_page=True)
+    drive, kept = begin(setup, tmp_path / "trial.parquet")
+    drive.press(1, 0.0, 0.0, 0.0)
+    drive.send("start")
+    start = time.monotonic()
+    while time.monotonic() - start < 4.5:
+        drive.press(7, 0.0, 0.0, 0.0)
+        time.sleep(0.05)
+    wait_for(lambda: kept.frames)
+    simulated = kept.column("time")[-1]
+    # Fixed steps that catch up: within a tenth of a second of the wall clock.
+    assert simulated == pytest.approx(time.monotonic() - start, abs=0.1)
+    assert kept.column("input_sequence")[-1] == 7.0
+    assert np.isfinite(kept.column("crossing_probability")[-10:]).all()
+    drive.stop()
+    assert drive.kept == [tmp_path / "trial.parquet"]
+    columns = read_record(drive.kept[0]).columns
+    assert np.allclose(np.diff(columns["time"]), 1 / 60)
+    assert columns["time"][-1] >= simulated - 0.05
+    assert np.isnan(columns["crossing_probability"][:170]).all()  # window not full
+    assert (tmp_path / "trial.wheel.parquet").exists()
+    assert kept.kinds() == ["started"]
+
+
+@pytest.fixture
+def torque_cell() -> Iterator[tuple[str, NDArray[np.float64]]]:
+    memory = SharedMemory(create=True, size=8)
+    cell: NDArray[np.float64] = np.ndarray(1, np.float64, memory.buf)
+    cell[0] = 0.0
+    yield memory.name, cell
+    del cell
+    memory.unlink()
+
+
+@needs_posix
+@pytest.mark.parametrize("how", [signal.SIGKILL, signal.SIGSTOP], ids=["dead", "stuck"])
+def test_wheel_is_let_go_and_the_record_kept_when_the_loop_dies_or_sticks(
+    begin: Begin,
+    torque_cell: tuple[str, NDArray[np.float64]],
+    tmp_path: Path,
+    how: signal.Signals,
+) -> None:
+    name, cell = torque_cell
+    setup = wheel_setup(
+        "strong-normal", hands=SpringHands(amplitude=0.3), torque_cell=name
+    )
+    drive, kept = begin(setup, tmp_path / "trial.parquet")
+    drive.send("start")
+    wait_for(lambda: abs(cell[0]) > 0.3)
+    os.kill(int(drive.pid), how)
+    stopped = time.monotonic()
+    wait_for(lambda: cell[0] == 0.0)
+    # 80 ms of patience; beyond 100 ms only what a busy machine adds.
+    assert time.monotonic() - stopped < 0.4
+    wait_for(lambda: "fault" in kept.kinds())
+    assert kept.column("fault")[-1] == STALLED
+    wait_for(lambda: drive.kept)
+    driven = read_record(drive.kept[0]).columns["time"]
+    assert driven[-1] > kept.column("time")[-1] - 0.3
+    time.sleep(0.05)
+    assert cell[0] == 0.0
+
+
+SERVER = """
+import sys, time
+from pathlib import Path
+from costeer.runtime.drive import Drive, Listener
+from tests.runtime.rig import drive_setup
+if __name__ == "__main__":
+    nobody = Listener(lambda frame: None, lambda marker: None)
+    drive = Drive(drive_setup(), Path(sys.argv[1]), nobody)
+    drive.start()
+    drive.send("start")
+    print(drive.pid, flush=True)
+    time.sleep(60)
+"""
+
+
+@needs_posix
+def test_killed_server_leaves_the_stream_and_the_loop_ends_by_itself(
+    tmp_path: Path,
+) -> None:
+    script = tmp_path / "server.py"
+    script.write_text(SERVER, encoding="utf-8")
+    path = tmp_path / "trial.parquet"
+    command = [sys.executable, str(script), str(path)]
+    environment = {**os.environ, "PYTHONPATH": str(Path.cwd())}
+    with subprocess.Popen(
+        command, stdout=subprocess.PIPE, text=True, env=environment
+    ) as server:
+        assert server.stdout is not None
+        loop = int(server.stdout.readline())
+        time.sleep(2.0)
+        server.send_signal(signal.SIGKILL)
+    assert read_stream(path.with_suffix(".arrow")).columns["time"][-1] > 1.0
+    wait_for(lambda: not is_running(loop))
+
+
+def is_running(process: int) -> bool:
+    """Whether a process of that number is alive; one that waits to be buried is not."""
+    try:
+        state = Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()[0]
+    except (FileNotFoundError, ProcessLookupError):
+        return False
+    return state != "Z"
