@@ -13,13 +13,14 @@ BASE := pyproject.toml requirements/build.in
 
 export UV_PYTHON_DOWNLOADS = never
 
-.PHONY: help study test check bench lock clean base dev bench-env
+.PHONY: help study test check bench page lock clean base dev bench-env
 
 help:
 	@echo "make study   run the experiment, write $(OUT)/report.html"
 	@echo "make test    run the tests, with branch coverage"
 	@echo "make check   formatting, lint, types, import order, documentation"
 	@echo "make bench   measure speed, beside two peers"
+	@echo "make page    fetch the libraries of the page that costeer drive shows"
 	@echo "make lock    pin every dependency anew"
 	@echo "make clean   remove results, caches and .venv"
 
@@ -27,7 +28,8 @@ study: base
 	$(BIN)/costeer study --out $(OUT)
 
 test: dev
-	$(BIN)/python -m pytest -n $(WORKERS) --cov --cov-report=term:skip-covered
+	$(BIN)/python -m pytest -n $(WORKERS) --cov --cov-report= --cov-fail-under=0
+	$(BIN)/python -m pytest -m browser --cov --cov-append --cov-report=term:skip-covered
 
 check: dev
 	$(BIN)/ruff format --check .
@@ -44,6 +46,9 @@ base dev:
 
 bench-env:
 	@$(PYTHON) requirements/install.py bench
+
+page: base
+	$(BIN)/python requirements/page.py
 
 lock: dev
 	$(COMPILE) requirements/installer.in -o requirements/installer.lock

@@ -1,7 +1,7 @@
 """What this computer has for costeer, and how to mend what is missing.
 
 Each check returns a `Finding`. `costeer study` needs those that are required; the
-others widen what can be done.
+others widen what can be done, `costeer drive` above all.
 """
 
 from __future__ import annotations
@@ -10,6 +10,7 @@ import os
 import platform
 import re
 import shutil
+import socket
 import statistics
 import sys
 import tempfile
@@ -30,7 +31,13 @@ STUDY_DISK = 1.0e9
 _EXTRAS = {
     "jax": ("jax", "gradients and GPUs"),
     "optax": ("train", "training the intention network"),
-    "onnxruntime": ("dev", "comparing the network with a second implementation"),
+    "onnxruntime": ("drive", "following the head with a webcam"),
+    "opencv-python-headless": ("drive", "following the head with a webcam"),
+    "pysdl2": ("drive", "steering wheels"),
+    "hidapi": ("drive", "Logitech wheels without a driver"),
+    "mcap": ("drive", "export to MCAP"),
+    "python-can": ("can", "a SENSO-Wheel"),
+    "pylsl": ("lsl", "head trackers and recorders over Lab Streaming Layer"),
     "highway-env": ("bench", "a peer in the benchmark"),
     "commonroad-vehicle-models": ("bench", "a peer in the benchmark"),
 }
@@ -67,6 +74,7 @@ def examine(folder: Path) -> list[Finding]:
         check_figures,
         check_timer,
     ]
+    checks += [check_priority, check_wheels, check_camera, check_port, check_page]
     return [check() for check in checks] + [check_extra(name) for name in _EXTRAS]
 
 
@@ -221,6 +229,81 @@ def _lateness(duration: float) -> float:
     start = time.perf_counter()
     time.sleep(duration)
     return time.perf_counter() - start - duration
+
+
+def check_priority() -> Finding:
+    """Whether the wheel's loop may run before all other programs."""
+    remedy = (
+        "allow it: write `@audio - rtprio 80` for your group into "
+        "/etc/security/limits.d/costeer.conf and log in again"
+    )
+    if not hasattr(os, "sched_setscheduler"):
+        return Finding("Priority", "ok", "asked for when a drive starts")
+    policy, old = os.sched_getscheduler(0), os.sched_getparam(0)
+    try:
+        os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(60))
+    except OSError:
+        detail = "SCHED_FIFO is not permitted; steps of a drive may come late"
+        return Finding("Priority", "optional", detail, remedy)
+    os.sched_setscheduler(0, policy, old)
+    return Finding("Priority", "ok", "SCHED_FIFO is permitted")
+
+
+def check_wheels() -> Finding:
+    """Steering wheels that are plugged in, and whether they are calibrated."""
+    from costeer.runtime.wheels.registry import found_wheels
+    from costeer.runtime.wheels.store import load_calibration
+
+    try:
+        found = found_wheels()
+    except (ModuleNotFoundError, OSError) as error:
+        remedy = "run: pip install 'costeer[drive]'"
+        return Finding("Steering wheel", "optional", str(error), remedy)
+    if not found:
+        detail = "none is plugged in; the keyboard steers"
+        return Finding("Steering wheel", "optional", detail)
+    names = ", ".join(wheel.name for wheel in found)
+    for wheel in found:
+        try:
+            load_calibration(wheel)
+        except ValueError:
+            remedy = "run: costeer wheel calibrate"
+            detail = f"{names}; {wheel.name} is not calibrated"
+            return Finding("Steering wheel", "optional", detail, remedy)
+    return Finding("Steering wheel", "ok", names)
+
+
+def check_camera() -> Finding:
+    """A webcam for the head, where the system tells without opening it."""
+    devices = sorted(Path("/dev").glob("video*")) if os.name == "posix" else []
+    if devices:
+        return Finding("Camera", "ok", ", ".join(map(str, devices)))
+    detail = "not seen without opening it" if sys.platform != "linux" else "none"
+    remedy = "plug in a webcam, or use --head lsl:NAME or opentrack; then costeer head"
+    return Finding("Camera", "optional", detail, remedy)
+
+
+def check_port() -> Finding:
+    """The page's port is free."""
+    from costeer.web.security import DEFAULT_PORT, LOOPBACK
+
+    with socket.socket() as probe:
+        try:
+            probe.bind((LOOPBACK, DEFAULT_PORT))
+        except OSError:
+            detail = f"{DEFAULT_PORT} is taken"
+            return Finding("Port", "optional", detail, "use --port 0 for any free one")
+    return Finding("Port", "ok", f"{DEFAULT_PORT} is free")
+
+
+def check_page() -> Finding:
+    """The libraries of the page were fetched when costeer was built."""
+    from costeer.web.pages import static_folder
+
+    vendor = static_folder() / "vendor"
+    if (vendor / "three.module.js").is_file():
+        return Finding("Page", "ok", "its libraries are there")
+    return Finding("Page", "optional", "its libraries are missing", "run: make page")
 
 
 def check_extra(package: str) -> Finding:

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import json
+import os
 import shutil
+import socket
 import tempfile
 from importlib.metadata import PackageNotFoundError
 from pathlib import Path
@@ -13,6 +15,7 @@ import pytest
 
 from costeer import doctor
 from costeer.cli import main
+from costeer.runtime.wheels.interface import WheelDescription
 
 
 class Usage(NamedTuple):
@@ -129,3 +132,51 @@ def test_systems_that_tell_neither_memory_nor_cores_are_no_error(
     monkeypatch.delattr("os.sysconf_names", raising=False)
     assert doctor.usable_cores() >= 1
     assert doctor.total_memory() is None
+
+
+def test_port_that_is_taken_is_told_with_the_way_out() -> None:
+    with socket.socket() as other:
+        other.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        other.bind(("127.0.0.1", 8700))
+        other.listen()
+        finding = doctor.check_port()
+    assert (finding.status, finding.detail) == ("optional", "8700 is taken")
+    assert "--port 0" in finding.remedy
+
+
+def test_priority_that_is_not_granted_comes_with_what_to_allow(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    def refuse(*_: object) -> None:
+        raise PermissionError
+
+    monkeypatch.setattr(os, "sched_setscheduler", refuse, raising=False)
+    finding = doctor.check_priority()
+    assert finding.status == "optional"
+    assert "limits.d" in finding.remedy
+
+
+def test_looking_at_the_priority_does_not_change_it() -> None:
+    if not hasattr(os, "sched_getscheduler"):
+        pytest.skip("this system has no such priorities")
+    before = os.sched_getscheduler(0)
+    doctor.check_priority()
+    assert os.sched_getscheduler(0) == before
+
+
+def test_page_without_its_libraries_is_told(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.setattr("costeer.web.pages.static_folder", lambda: tmp_path)
+    assert doctor.check_page().remedy == "run: make page"
+
+
+def test_wheel_that_is_not_calibrated_is_told(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    wheel = WheelDescription("sdl", "0", "Old wheel", "046d-c24f")
+    monkeypatch.setenv("COSTEER_HOME", str(tmp_path))
+    monkeypatch.setattr("costeer.runtime.wheels.registry.found_wheels", lambda: [wheel])
+    finding = doctor.check_wheels()
+    assert "Old wheel is not calibrated" in finding.detail
+    assert finding.remedy == "run: costeer wheel calibrate"

@@ -13,7 +13,7 @@ from costeer.cli import wheel_session
 from costeer.cli.errors import exit_code_of
 from costeer.cli.group import load_command
 from costeer.runtime import clock
-from costeer.runtime.wheels import registry
+from costeer.runtime.wheels import excitation, registry, selftest
 from costeer.runtime.wheels.calibration import WheelCalibration, uncalibrated
 from costeer.runtime.wheels.interface import WheelDescription
 from costeer.runtime.wheels.pedals import NO_PEDAL, PedalAxis, pressed_axis
@@ -54,6 +54,9 @@ class PedalWheel(SimulatedWheel):
 @pytest.fixture(autouse=True)
 def home(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.setenv("COSTEER_HOME", str(tmp_path))
+    brief = excitation.ExcitationParameters(duration=6.0)
+    monkeypatch.setattr(excitation, "DEFAULTS", brief)
+    monkeypatch.setattr(selftest, "TEST_PUSHES", brief)
     return tmp_path
 
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from costeer.cli.console import note, print_table
+from costeer.cli.validate import in_range
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -21,9 +22,20 @@ def bench(
     quick: Annotated[
         bool, typer.Option("--quick", help="Fewer rounds and shorter trials.")
     ] = False,
+    drive: Annotated[
+        bool, typer.Option("--drive", help="How well a drive keeps time, instead.")
+    ] = False,
+    seconds: Annotated[
+        float,
+        typer.Option(callback=in_range(5, 36_000), help="With --drive: how long [s]."),
+    ] = 60.0,
+    browser: Annotated[
+        str,
+        typer.Option(help="With --drive: Chromium that draws the page meanwhile."),
+    ] = "",
     json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
 ) -> None:
-    """Measure the speed of the control step, a trial and a batch.
+    """Measure the speed of the control step, a trial and a batch, or of a drive.
 
     Each number is the median of some rounds, with the lowest and the highest. Peers
     come with: pip install 'costeer[bench]'.
@@ -31,7 +43,11 @@ def bench(
     Example:
         costeer bench
         costeer bench --quick --json
+        costeer bench --drive --seconds 600 --browser /usr/bin/chromium
     """
+    if drive:
+        _bench_drive(seconds, browser, json)
+        return
     from costeer.bench.machine import machine
     from costeer.bench.timing import FULL, QUICK, Figure
 
@@ -43,6 +59,28 @@ def bench(
         _print_json(about, figures, skipped)
     else:
         _print_text(about, figures, skipped)
+
+
+def _bench_drive(seconds: float, browser: str, as_json: bool) -> None:
+    """Drive for so long, print what kept its time and what did not."""
+    from costeer.bench.drive import figures, measure_drive
+    from costeer.bench.machine import machine
+
+    about = machine()
+    note(f"driving for {seconds:g} s")
+    material = measure_drive(seconds, browser)
+    about["priority"] = material.priority
+    found = figures(material)
+    if as_json:
+        import json
+
+        answer = {"machine": about, "figures": [each._asdict() for each in found]}
+        typer.echo(json.dumps(answer, indent=2, ensure_ascii=False))
+        return
+    for name, value in about.items():
+        typer.echo(f"{name:10} {value}")
+    rows = [[each.name, _short(each.value), each.unit, each.verdict] for each in found]
+    print_table(["measured", "value", "unit", "budget"], rows)
 
 
 def _measure(effort: Effort) -> Outcome:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import signal
 from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -117,6 +118,7 @@ def drive(
         head=chosen_head(head, participant),
         participant=participant,
     )
+    signal.signal(signal.SIGTERM, _stop)
     options = PageOptions(input=chosen.input, show_signals=signals)
     access = access_for(host, port)
     session = DriveOnPages(setup, record, options)
@@ -128,6 +130,11 @@ def drive(
         if outlet is not None:
             outlet.close()
     tell_end(session)
+
+
+def _stop(*_: object) -> None:
+    """End as Ctrl-C does, so that the record is made whole."""
+    raise KeyboardInterrupt
 
 
 def outlet_of(session: DriveOnPages) -> TrialOutlet:
@@ -150,6 +157,7 @@ def outlet_of(session: DriveOnPages) -> TrialOutlet:
 
 def run_drive(session: DriveOnPages, access: Access, browser: bool) -> None:
     """Start the processes, serve the pages until Ctrl-C or the experimenter's stop."""
+    from costeer.runtime.clock import favour_thread
     from costeer.web.app import drive_app
     from costeer.web.serving import open_page, serve
 
@@ -167,6 +175,7 @@ def run_drive(session: DriveOnPages, access: Access, browser: bool) -> None:
         if browser:
             open_page(running.address)
 
+    favour_thread()
     with suppress(KeyboardInterrupt):
         serve(make_app, access, announce)
 

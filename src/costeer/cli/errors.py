@@ -27,6 +27,7 @@ _EXTRAS = {
     "google.protobuf": "drive",
     "hid": "drive",
     "mcap": "drive",
+    "playwright": "dev",
     "sdl2": "drive",
     "can": "can",
     "pylsl": "lsl",
@@ -46,6 +47,8 @@ def exit_code_of(run: Callable[[], object]) -> int:
     except typer.TyperException as error:
         return _refused(error, _usage(error))
     except ModuleNotFoundError as error:
+        if error.name is None:  # raised by costeer itself, with the way out
+            return _refused(error, str(error))
         if error.name not in _EXTRAS:
             raise
         return _refused(error, _missing_module(error.name))

@@ -164,16 +164,16 @@ def calibrate(chosen: Chosen, reference: Reference, pedals: bool) -> None:
         ValueError: If the wheel did what it should not.
         OSError: If it is lost, or the file cannot be written.
     """
-    from costeer.runtime.wheels import selftest
-    from costeer.runtime.wheels.excitation import DEFAULTS
+    from costeer.runtime.wheels import excitation, selftest
     from costeer.runtime.wheels.store import save_calibration
 
-    _warn(chosen, DEFAULTS.duration)
+    pushes = excitation.DEFAULTS
+    _warn(chosen, pushes.duration)
     raw = _uncalibrated(chosen)
     with closing(_opened(chosen, raw)) as wheel:
         raw = _with_pedals(wheel, raw) if pedals and not chosen.simulated else raw
         dt = 1.0 / selftest.reading_rate(wheel)
-        result = _run(chosen, wheel, selftest.calibrate(raw, reference, dt))
+        result = _run(chosen, wheel, selftest.calibrate(raw, reference, dt, pushes))
     path = save_calibration(result.calibration)
     _show(result.calibration)
     typer.echo(f"The calibration explains {result.explained:.1%} of the movement.")
@@ -193,10 +193,11 @@ def check(chosen: Chosen) -> None:
     from costeer.runtime.wheels.store import CALIBRATE, load_calibration
 
     stored = load_calibration(chosen.description)
-    _warn(chosen, selftest.TEST_PUSHES.duration)
+    pushes = selftest.TEST_PUSHES
+    _warn(chosen, pushes.duration)
     with closing(_opened(chosen, selftest.opened_for_test(stored))) as wheel:
         dt = 1.0 / selftest.reading_rate(wheel)
-        found = _run(chosen, wheel, selftest.compare(stored, dt))
+        found = _run(chosen, wheel, selftest.compare(stored, dt, pushes))
     wrong = [each.name for each in found if not selftest.agrees(each)]
     print_table(
         ("value", "stored", "found", "may differ by", "unit", ""),

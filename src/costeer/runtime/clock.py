@@ -85,6 +85,20 @@ def raise_priority(level: int = 60) -> Priority:
     return Priority(True, f"SCHED_FIFO {level}")
 
 
+def favour_thread(level: int = 30) -> None:
+    """Let the calling thread run before ordinary ones, if that is permitted.
+
+    For the threads that pass a frame on: they do little, and a browser that renders in
+    software would let them wait for a tenth of a second.
+
+    Args:
+        level: Of SCHED_RR, below that of the wheel's loop.
+    """
+    if hasattr(os, "sched_setscheduler"):
+        with suppress(PermissionError):
+            os.sched_setscheduler(0, os.SCHED_RR, os.sched_param(level))
+
+
 def _raise_on_windows() -> Priority:
     """The high priority class of Windows."""
     import ctypes

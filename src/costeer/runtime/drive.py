@@ -15,6 +15,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from costeer.runtime.clock import favour_thread
 from costeer.runtime.frame import FAULTS, FRAME_COLUMNS, PAUSED, PLACE, STALLED
 from costeer.runtime.head.process import run_head_process
 from costeer.runtime.links import Links
@@ -237,6 +238,7 @@ class Drive:
 
     def _listen(self) -> None:
         """Show life, and pass every frame on as soon as it is there."""
+        favour_thread()
         next_frame = 0
         while not self._closing.is_set():
             self._live()

@@ -28,6 +28,7 @@ from costeer.runtime.frame import (
     PAUSED,
     RUNNING,
     SENSOR_STALE,
+    TRACE_COLUMNS,
     WAITING,
     WHEEL_LOST,
 )
@@ -108,7 +109,7 @@ class Driving:
         self._road = drive_parameters(setup).road
         self._draws = leader_draws(setup)
         self._frame = np.full(len(FRAME_COLUMNS), np.nan)
-        self._traced = np.zeros(6)
+        self._traced = np.zeros(len(TRACE_COLUMNS))
         self._condition = setup.trial.condition
         self._method = setup.trial.method
         self.stopping = False
@@ -244,6 +245,7 @@ class Driving:
     def plant_step(self, late: float) -> None:
         """Wheel and car one plant step on."""
         moving = self._run_state == RUNNING
+        start = self._clock()
         try:
             self._cabin.advance(moving, self._fault != NO_FAULT)
         except WheelLost:
@@ -256,9 +258,9 @@ class Driving:
         if moving and reading is not None and now - reading.time > WHEEL_PATIENCE:
             self._break_off(SENSOR_STALE)
         if moving:
-            self._put_trace(late)
+            self._put_trace(late, now - start)
 
-    def _put_trace(self, late: float) -> None:
+    def _put_trace(self, late: float, took: float) -> None:
         """The wheel at the plant's rate, for the record."""
         cabin, traced = self._cabin, self._traced
         reading: WheelReading | None = cabin.reading
@@ -268,6 +270,7 @@ class Driving:
         traced[3] = math.nan if reading is None else reading.steering_wheel_rate
         traced[4] = cabin.wheel_torque
         traced[5] = math.nan if reading is None else cabin.driver_torque
+        traced[6] = took
         self._trace.put(traced)
 
     # Safety

@@ -49,7 +49,10 @@ TRACE_COLUMNS = (
     "steering_wheel_rate",
     "wheel_torque",
     "driver_torque",
+    "step_time",
 )
-"""Of the wheel at the plant's rate; lateness in seconds, all else as in a record."""
+"""Of the wheel at the plant's rate. `time` is that of the control step, `lateness` how
+late the plant step began, `step_time` how long it took, the device's answers included.
+"""
 
-TRACE_UNITS = ("s", "s", "rad", "rad/s", "N·m", "N·m")
+TRACE_UNITS = ("s", "s", "rad", "rad/s", "N·m", "N·m", "s")

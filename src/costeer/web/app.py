@@ -152,10 +152,10 @@ async def _receive(
 ) -> None:
     """Read and apply messages until the page leaves or is shut out."""
     limits = intake.IntakeParameters()
-    state = intake.initial_state(limits, time.monotonic())
+    state = intake.initial_state(limits, time.perf_counter())
     while not intake.is_exhausted(limits, state):
         text = await _text(websocket)
-        state, admitted = intake.admit(limits, state, time.monotonic())
+        state, admitted = intake.admit(limits, state, time.perf_counter())
         try:
             message = _checked(text, role, admitted)
         except ValueError as error:
@@ -205,7 +205,7 @@ def _answer(
 ) -> dict[str, object] | None:
     """What a page is told in return; nothing for most messages."""
     if isinstance(message, Ping):
-        return {"type": "pong", "t": message.t, "server_time": time.monotonic()}
+        return {"type": "pong", "t": message.t, "server_time": time.perf_counter()}
     try:
         return session.apply(role, message)
     except ValueError as error:

@@ -25,12 +25,10 @@ static const char *place(const char *path) {
 }
 
 static int is_wheel(int fd) {
-    static int (*real)(int, const char *, struct stat *);
     struct stat node, other;
     const char *path = getenv("FAKE_WHEEL_NODE");
-    if (!real) real = dlsym(RTLD_NEXT, "__xstat");
     return path && fstat(fd, &other) == 0 && S_ISFIFO(other.st_mode) &&
-           real(1, path, &node) == 0 && node.st_ino == other.st_ino;
+           stat(path, &node) == 0 && node.st_ino == other.st_ino;
 }
 
 static int is_gone(void) {

@@ -15,6 +15,7 @@ from costeer.runtime.wheels.calibration import (
     device_command,
     device_torque,
     largest_torque,
+    observer_parameters,
     uncalibrated,
 )
 
@@ -102,3 +103,9 @@ def test_a_calibration_of_no_wheel_is_refused() -> None:
 
 def test_a_good_calibration_passes_as_it_is() -> None:
     assert checked(CURVED) is CURVED
+
+
+def test_the_observer_knows_the_device_by_its_calibration() -> None:
+    found = CURVED._replace(inertia=0.03, damping=0.04, friction=0.1, latency=0.006)
+    observer = observer_parameters(found)
+    assert observer[:5] == (0.03, 0.04, 0.0, 0.1, 0.006)  # no stiffness of its own

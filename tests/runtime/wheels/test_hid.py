@@ -76,8 +76,8 @@ def opened(transport: RecordingTransport) -> HidWheel:
 
 def loss(use: Callable[[], object]) -> str:
     """Do something until the wheel is lost; return what is said."""
-    last = time.monotonic() + ENOUGH
-    while time.monotonic() < last:
+    last = time.perf_counter() + ENOUGH
+    while time.perf_counter() < last:
         try:
             use()
         except WheelLost as error:
@@ -88,9 +88,9 @@ def loss(use: Callable[[], object]) -> str:
 
 def until(met: Callable[[], bool]) -> None:
     """Wait for another thread."""
-    last = time.monotonic() + ENOUGH
+    last = time.perf_counter() + ENOUGH
     while not met():
-        assert time.monotonic() < last
+        assert time.perf_counter() < last
         time.sleep(0.001)
 
 
@@ -143,10 +143,10 @@ def test_what_is_no_finite_torque_is_sent_as_none(torque: float) -> None:
 def test_a_force_that_is_not_refreshed_is_taken_off_once() -> None:
     transport = RecordingTransport(report())
     wheel = opened(transport)
-    start = time.monotonic()
+    start = time.perf_counter()
     wheel.write(1.0)
     until(lambda: len(transport.written) > len(OPENING) + 1)
-    assert time.monotonic() - start >= 0.2
+    assert time.perf_counter() - start >= 0.2
     time.sleep(0.25)
     forces = transport.written[len(OPENING) :]
     assert [force[2] for force in forces] == [0xC0, 0x80]
@@ -160,11 +160,11 @@ def test_a_slow_transfer_neither_holds_the_loop_nor_queues_old_torques() -> None
     transport.entered.clear()
     wheel.write(2.0)
     assert transport.entered.wait(ENOUGH)  # the thread stands in the transfer
-    start = time.monotonic()
+    start = time.perf_counter()
     for _ in range(100):
         wheel.write(-1.0)
     wheel.write(1.0)
-    assert time.monotonic() - start < ENOUGH / 10.0
+    assert time.perf_counter() - start < ENOUGH / 10.0
     transport.held.set()
     until(lambda: len(transport.written) >= len(OPENING) + 2)
     assert [c[2] for c in transport.written[len(OPENING) :]] == [0xFF, 0xC0]

@@ -15,6 +15,7 @@ from costeer.runtime.wheels.registry import (
     open_wheel,
     prepare_stop,
 )
+from costeer.runtime.wheels.sdl_session import sdl_library
 
 BY_SDL = WheelDescription("sdl", "03#0", "G29", "046d-c24f")
 BY_HID = WheelDescription("hid", "path", "Logitech G29", "046d-c24f-hid")
@@ -105,3 +106,7 @@ def test_libraries_are_ready_before_they_are_needed() -> None:
     for kind in ("sdl", "hid", "senso", "simulated"):
         prepare_stop(BY_SDL._replace(kind=kind))
     assert {"sdl2", "hid", "can"} <= set(sys.modules)
+    library = sdl_library()
+    parts = library.SDL_INIT_JOYSTICK | library.SDL_INIT_HAPTIC
+    assert library.SDL_WasInit(parts) == parts
+    library.SDL_Quit()

@@ -46,7 +46,7 @@ def test_torques_become_levels_of_one_effect(seen: dict[str, Seen]) -> None:
     assert seen["pushes"].result == [True, 2.0, True]
     # The first two are the effect as it is made and as it starts, the last is the end;
     # what is no finite torque is none.
-    levels = [0, 0, 16384, -16384, 32767, -32767, 8192, 0, 0, 0]
+    levels = [0, 0, 16384, -16384, 32767, -32767, 0, 0, 8192, 0]
     assert seen["pushes"].effects("level") == levels
     assert set(seen["pushes"].effects("id")) == {0}
     assert set(seen["pushes"].effects("type")) == {0x52}
@@ -88,7 +88,7 @@ def test_axes_and_buttons_come_back_in_our_units(seen: dict[str, Seen]) -> None:
     assert readings[-1][3:5] == pytest.approx([1.0, 0.5], abs=1.0 / 255.0)
     assert all(math.isnan(value) for reading in readings for value in reading[1:3])
     assert len(axes) == 4
-    assert 0.0 < time.monotonic() - at < 60.0
+    assert 0.0 < time.perf_counter() - at < 60.0
 
 
 def test_an_unplugged_wheel_is_lost_for_writer_and_reader(

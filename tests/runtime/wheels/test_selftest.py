@@ -39,7 +39,7 @@ from costeer.runtime.wheels.simulated import (
 from tests.runtime.wheels.user import User
 
 DT = 1.0 / 960.0
-BRIEF = ExcitationParameters(duration=8.0)
+BRIEF = ExcitationParameters(duration=6.0)
 LEVELS = tuple(0.05 * n for n in range(21))
 
 
@@ -96,25 +96,25 @@ def calibrated(
     )
 
 
-@pytest.mark.parametrize("seed", [1, 2, 3, 4])
+@pytest.mark.parametrize("seed", [1, 2, 3])
 def test_a_device_is_found_whatever_it_is(seed: int) -> None:
     device, peak = drawn(seed)
     found = calibrated(device, Reference(peak_torque=peak, turns=False)).calibration
     truth = true_calibration(device)
-    # Of 100 such devices the worst were off by (docs/wheels.md): inertia 3 %, damping
-    # 0.02, friction 8 % + 0.01, latency 0.9 ms, torque 2 % of the largest.
+    # Of 40 such devices, pushed for 6 s, the worst were off by: inertia 0.7 %, damping
+    # 0.004, friction 0.02 N·m, latency 0.15 ms, torque 3 % of the largest.
     assert found.torque_sign == truth.torque_sign
-    assert found.inertia == pytest.approx(truth.inertia, rel=0.04)
-    assert found.damping == pytest.approx(truth.damping, abs=0.03)
-    assert found.friction == pytest.approx(truth.friction, rel=0.1, abs=0.015)
-    assert found.latency == pytest.approx(truth.latency, abs=0.0015)
+    assert found.inertia == pytest.approx(truth.inertia, rel=0.015)
+    assert found.damping == pytest.approx(truth.damping, abs=0.006)
+    assert found.friction == pytest.approx(truth.friction, abs=0.03)
+    assert found.latency == pytest.approx(truth.latency, abs=0.0003)
     for torque in np.linspace(0.1, 1.0, 10) * found.torque_curve[-1][1]:
         asked = device_command(found, float(torque))
         given = math.copysign(
             np.interp(abs(asked), *zip(*truth.torque_curve, strict=True)),
             asked * truth.torque_sign,
         )
-        assert given == pytest.approx(torque, abs=0.03 * peak)
+        assert given == pytest.approx(torque, abs=0.04 * peak)
 
 
 @pytest.mark.parametrize("angle_sign", [-1.0, 1.0])
@@ -238,6 +238,19 @@ def test_a_wheel_that_is_lost_is_told_as_lost() -> None:
     device = SimulatedWheelParameters(unplug_at=2.0)
     with pytest.raises(WheelLost):
         calibrated(device, Reference(peak_torque=2.2, turns=False))
+
+
+def test_a_wheel_that_says_the_same_for_ever_stops_the_test() -> None:
+    device = SimulatedWheelParameters(freeze_at=2.0)
+    with pytest.raises(SelfTestStopped, match="nothing new"):
+        calibrated(device, Reference(peak_torque=2.2, turns=False))
+
+
+def test_a_wheel_without_an_angle_stops_the_test() -> None:
+    device = SimulatedWheelParameters(angle_sign=math.nan)
+    opened = uncalibrated("w", device.full_range)
+    with pytest.raises(SelfTestStopped, match="does not tell its angle"):
+        calibrated(device, Reference(peak_torque=2.2, turns=False), opened)
 
 
 @pytest.mark.parametrize(

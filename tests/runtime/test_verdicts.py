@@ -1,0 +1,66 @@
+"""The network process gives the verdicts that the studies would have given."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from costeer.loop.rows import ROW_COLUMNS
+from costeer.loop.scenario import TrialSetup
+from costeer.loop.trial import simulate_trial
+from costeer.plant.parameters import RoadParameters
+from costeer.runtime.frame import FRAME_COLUMNS, PLACE
+from costeer.runtime.verdicts import Reader
+
+SETUP = TrialSetup(seed=4, length=1500.0)
+
+
+def frames_of(columns: dict[str, NDArray[np.float64]]) -> NDArray[np.float64]:
+    """Frames of a drive that was recorded."""
+    frames = np.full((len(columns["time"]), len(FRAME_COLUMNS)), np.nan)
+    for name in set(ROW_COLUMNS) - {"mode"}:
+        values = np.ma.filled(np.ma.asarray(columns[name], float), np.nan)
+        frames[:, PLACE[name]] = values
+    return frames
+
+
+@pytest.fixture(scope="module")
+def record() -> dict[str, NDArray[np.float64]]:
+    return simulate_trial(SETUP).columns
+
+
+def test_verdicts_over_frames_are_those_of_the_trial(
+    record: dict[str, NDArray[np.float64]],
+) -> None:
+    reader = Reader(RoadParameters(), ())
+    verdicts = [reader.read(frame) for frame in frames_of(record)]
+    np.testing.assert_array_equal(verdicts, record["crossing_probability"])
+    assert (record["lane"] == 0).any()  # both sides were part of it
+    assert not record["head_yaw_valid"].all()  # and a lost head
+
+
+def test_gap_and_restart_begin_a_new_window(
+    record: dict[str, NDArray[np.float64]],
+) -> None:
+    frames = frames_of(record)[:400]
+    reader = Reader(RoadParameters(), ())
+    for frame in frames[:200]:
+        before = reader.read(frame)
+    after_gap = [reader.read(frame) for frame in frames[205:390]]
+    again = [reader.read(frame) for frame in frames[:180]]
+    assert np.isfinite(before)
+    assert np.isnan(after_gap[:179]).all()
+    assert np.isfinite(after_gap[179:]).all()
+    assert np.isnan(again[:179]).all()
+    assert again[179] == record["crossing_probability"][179]
+
+
+def test_drive_without_a_tracker_is_judged_by_motion_alone(
+    record: dict[str, NDArray[np.float64]],
+) -> None:
+    frames = frames_of(record)[:240]
+    turned = frames.copy()
+    turned[:, PLACE["head_yaw"]] = 0.9
+    there, here = (Reader(RoadParameters(), ("head_yaw",)) for _ in range(2))
+    assert [here.read(f) for f in frames][-1] == [there.read(f) for f in turned][-1]

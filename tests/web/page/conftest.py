@@ -1,0 +1,64 @@
+"""Chromium for the tests of the page; they are left out where there is none."""
+
+from __future__ import annotations
+
+import shutil
+import time
+from collections.abc import Callable, Iterator
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+from tests.web.page.stub import STATIC
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Browser, Page
+
+FLAGS = [
+    "--no-sandbox",
+    "--use-angle=swiftshader",
+    "--enable-unsafe-swiftshader",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-sync",
+    "--disable-quic",
+    "--no-first-run",
+]
+PATIENCE = 60.0
+"""Longest wait for the page [s]: others may use the machine at the same time."""
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[Browser]:
+    """One Chromium for a module; skips where browser or libraries are missing."""
+    api = pytest.importorskip("playwright.sync_api")
+    program = shutil.which("chromium") or shutil.which("google-chrome")
+    if program is None:
+        pytest.skip("no Chromium here")
+    if not (STATIC / "vendor" / "stamp.txt").is_file():
+        pytest.skip("the page's libraries are missing: make page")
+    with api.sync_playwright() as playwright:
+        chromium = playwright.chromium.launch(executable_path=program, args=FLAGS)
+        yield chromium
+        chromium.close()
+
+
+def until(page: Page, expression: str) -> Any:  # Any: what the expression gives
+    """Value of an expression in the page as soon as it is true.
+
+    The page's content policy forbids `wait_for_function`, which evaluates text.
+    """
+    deadline = time.monotonic() + PATIENCE
+    while time.monotonic() < deadline:
+        if value := page.evaluate(expression):
+            return value
+        page.wait_for_timeout(20)
+    raise AssertionError(f"not true within {PATIENCE:g} s: {expression}")
+
+
+def wait_for(page: Page, happened: Callable[[], bool]) -> None:
+    """Let the page go on until something happened outside it."""
+    deadline = time.monotonic() + PATIENCE
+    while not happened():
+        assert time.monotonic() < deadline, "it did not happen"
+        page.wait_for_timeout(20)

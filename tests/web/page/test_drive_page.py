@@ -1,0 +1,151 @@
+"""The page drives: it shows the road, tells what hands do and what it waits for."""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from tests.web.page.conftest import until, wait_for
+from tests.web.page.stub import Stub, served
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Browser, Page
+
+pytestmark = pytest.mark.browser
+
+
+class Driven:
+    """A page that drives on a stub."""
+
+    def __init__(self, page: Page, stub: Stub, address: str) -> None:
+        self.page, self.stub, self.address = page, stub, address
+        self.requests: list[str] = []
+        self.errors: list[str] = []
+        page.on("request", lambda request: self.requests.append(request.url))
+        page.on("pageerror", lambda error: self.errors.append(str(error)))
+
+    def press(self, key: str) -> None:
+        """Press a key in the page."""
+        self.page.keyboard.press(key)
+
+    def hear_steer(self, steer: float) -> None:
+        """Wait until the newest input steers so."""
+        inputs = self.stub.of_type
+        wait_for(self.page, lambda: inputs("input")[-1]["steer"] == steer)
+
+    def enter(self, state: str) -> None:
+        """Bring the trial into a state and wait until the page is there."""
+        number = ["waiting", "running", "paused", "ended"].index(state)
+        self.stub.frame |= {"run_state": float(number), "fault": 0.0}
+        until(self.page, f"costeer.state === '{state}'")
+
+
+@pytest.fixture(scope="module")
+def driven(browser: Browser) -> Iterator[Driven]:
+    stub = Stub()
+    with served(stub) as address:
+        page = browser.new_page(viewport={"width": 480, "height": 270})
+        found = Driven(page, stub, address)
+        page.goto(f"{address}/?low&clean")
+        until(page, "window.costeer && costeer.state === 'waiting'")
+        yield found
+        assert found.errors == []
+        page.close()
+
+
+def banner(page: Page) -> str:
+    return page.locator("#banner").inner_text()
+
+
+def test_enter_starts_a_waiting_trial(driven: Driven) -> None:
+    driven.enter("waiting")
+    assert "Press Enter or Space to start" in banner(driven.page)
+    driven.press("Enter")
+    until(driven.page, "costeer.state === 'running'")
+    assert len(driven.stub.of_type("start")) == 1
+    assert driven.page.locator("#banner").is_hidden()
+
+
+def test_frames_arrive_by_name_and_are_counted(driven: Driven) -> None:
+    driven.enter("running")
+    before = driven.page.evaluate("costeer.frames")
+    until(driven.page, f"costeer.frames > {before} + 10")
+    frame = driven.page.evaluate("costeer.lastFrame")
+    assert frame["longitudinal_velocity"] == 20.0
+    assert frame["steering_wheel_angle"] == 0.2
+    assert until(driven.page, "costeer.fps > 0")
+
+
+def test_arrows_steer_left_positive_and_let_go(driven: Driven) -> None:
+    driven.enter("running")
+    for key, steer in (("ArrowLeft", 1), ("d", -1)):
+        driven.page.keyboard.down(key)
+        driven.hear_steer(steer)
+        driven.page.keyboard.up(key)
+        driven.hear_steer(0)
+
+
+def test_inputs_go_on_without_keys_and_are_numbered(driven: Driven) -> None:
+    before = len(driven.stub.of_type("input"))
+    wait_for(driven.page, lambda: len(driven.stub.of_type("input")) > before + 5)
+    numbers = [message["sequence"] for message in driven.stub.of_type("input")]
+    assert numbers == list(range(numbers[0], numbers[0] + len(numbers)))
+
+
+def test_latency_is_measured_and_told(driven: Driven) -> None:
+    until(driven.page, "costeer.latency.input.count > 5")
+    p50 = driven.page.evaluate("costeer.latency.input.p50")
+    # The echo comes with a frame, so within some frames; a second is another fault.
+    assert 0.0 < p50 < 1000.0
+    wait_for(driven.page, lambda: len(driven.stub.of_type("latency")) > 0)
+    assert 1 <= len(driven.stub.of_type("latency")[0]["values"]) <= 60
+
+
+def test_a_lost_wheel_is_named_and_space_goes_on(driven: Driven) -> None:
+    driven.enter("running")
+    driven.stub.frame |= {"run_state": 2.0, "fault": 1.0}
+    until(driven.page, "costeer.state === 'paused'")
+    assert "The wheel was lost" in banner(driven.page)
+    driven.stub.frame["fault"] = 0.0
+    driven.press("Space")
+    until(driven.page, "costeer.state === 'running'")
+
+
+def test_the_same_indicator_twice_is_off(driven: Driven) -> None:
+    driven.enter("running")
+    for side in (1, 0):
+        driven.press("z")
+        until(driven.page, f"costeer.lastFrame.indicator === {side}")
+    assert [m["side"] for m in driven.stub.of_type("indicator")] == [1, 0]
+
+
+def test_participants_see_no_signals(driven: Driven) -> None:
+    for _ in range(2):
+        assert driven.page.locator("#signals").is_hidden()
+        driven.press("s")
+    assert driven.page.locator("#panel").is_hidden()
+
+
+def test_the_view_shows_sky_above_and_road_below(driven: Driven) -> None:
+    driven.enter("running")
+    driven.page.wait_for_timeout(300)
+    picture = Image.open(io.BytesIO(driven.page.screenshot())).convert("RGB")
+    pixels = np.asarray(picture, dtype=float)
+    height, width, _ = pixels.shape
+    sky = pixels[: height // 8, width // 2 :].mean(axis=(0, 1))
+    road = pixels[int(0.58 * height), width // 3 : width // 2].mean(axis=0)
+    assert sky[2] > sky[0] + 20.0  # blue sky
+    assert np.ptp(road) < 25.0  # grey road
+    assert road.mean() < sky.mean()
+
+
+def test_nothing_is_loaded_from_elsewhere(driven: Driven) -> None:
+    assert driven.requests
+    own = driven.address.removeprefix("http")
+    outside = [u for u in driven.requests if own not in u and not u.startswith("data:")]
+    assert outside == []

@@ -1,0 +1,188 @@
+"""What pages of a drive are told and may ask; the drive itself stands still here."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+import pytest
+
+from costeer.runtime.frame import FRAME_COLUMNS, PLACE
+from costeer.runtime.tunables import TUNABLES
+from costeer.web.drive import DriveOnPages, PageOptions
+from costeer.web.messages import (
+    ChooseCondition,
+    ChooseMethod,
+    Indicator,
+    Input,
+    Latency,
+    Message,
+    Pause,
+    Restart,
+    Resume,
+    Set,
+    Start,
+    Stop,
+)
+from tests.runtime.rig import drive_setup
+
+
+class Sent:
+    """A drive that takes down what it is asked for."""
+
+    def __init__(self, session: DriveOnPages) -> None:
+        self.commands: list[tuple[object, ...]] = []
+        self.inputs: list[tuple[object, ...]] = []
+        drive = session.drive
+        drive.send = lambda *command: self.commands.append(command)  # type: ignore[method-assign]  # instead of a process
+        drive.press = lambda *keys: self.inputs.append(keys)  # type: ignore[method-assign]  # instead of a process
+
+
+@pytest.fixture
+def session() -> Iterator[DriveOnPages]:
+    made = DriveOnPages(drive_setup(), None, PageOptions(show_signals=False))
+    yield made
+    made.stop()
+
+
+@pytest.fixture
+def sent(session: DriveOnPages) -> Sent:
+    return Sent(session)
+
+
+@pytest.mark.parametrize(
+    ("message", "command"),
+    [
+        (Start(), ("start",)),
+        (Resume(), ("resume",)),
+        (Restart(), ("restart",)),
+        (Pause(), ("pause", "by the experimenter")),
+        (Indicator(-1), ("indicator", -1)),
+        (Set("preview_time", 2.0), ("set", "preview_time", 2.0)),
+        (ChooseCondition("weak-rapid"), ("condition", "weak-rapid")),
+        (ChooseMethod("manual"), ("method", "manual")),
+        (Stop(), ("pause", "stopped by the experimenter")),
+    ],
+)
+def test_message_becomes_a_command(
+    session: DriveOnPages, sent: Sent, message: Message, command: tuple[object, ...]
+) -> None:
+    assert session.apply("experimenter", message) is None
+    assert sent.commands == [command]
+
+
+@pytest.mark.parametrize(
+    ("message", "told"),
+    [
+        (Set("preview_time", 99.0), "from 0.5 to 3 s"),
+        (Set("mass", 1.0), "cannot be tuned"),
+        (ChooseCondition("strongest"), "strongest"),
+        (ChooseMethod("magic"), "magic"),
+    ],
+)
+def test_what_cannot_be_is_refused_before_it_reaches_the_loop(
+    session: DriveOnPages, sent: Sent, message: Message, told: str
+) -> None:
+    with pytest.raises(ValueError, match=told):
+        session.apply("experimenter", message)
+    assert sent.commands == []
+
+
+def test_stop_ends_the_server(session: DriveOnPages, sent: Sent) -> None:
+    ended: list[bool] = []
+    session.on_stop = lambda: ended.append(True)
+    session.apply("experimenter", Stop())
+    assert ended == [True]
+
+
+def test_experimenters_keys_steer_only_while_nobody_else_drives(
+    session: DriveOnPages, sent: Sent
+) -> None:
+    keys = Input(sequence=1, steer=0.5, accelerator=0.0, brake=0.0)
+    session.apply("experimenter", keys)
+    session.client_joined("driver")
+    session.apply("experimenter", keys)
+    assert sent.inputs == [(1, 0.5, 0.0, 0.0)]
+    session.apply("driver", keys)
+    assert len(sent.inputs) == 2
+
+
+def test_one_page_drives_and_a_second_is_told_why_not(session: DriveOnPages) -> None:
+    session.client_joined("driver")
+    session.client_joined("experimenter")
+    with pytest.raises(ValueError, match="another page drives already"):
+        session.client_joined("driver")
+    session.client_left("driver")
+    session.client_joined("driver")
+
+
+def test_hello_names_every_number_of_a_frame_and_hides_what_participants_may_not_see(
+    session: DriveOnPages,
+) -> None:
+    driver, experimenter = session.hello("driver"), session.hello("experimenter")
+    assert driver["columns"] == list(FRAME_COLUMNS)
+    assert driver["tunables"] == []
+    assert driver["show_signals"] is False
+    assert experimenter["show_signals"] is True
+    tunables: Any = experimenter["tunables"]
+    assert [each["name"] for each in tunables] == [each.name for each in TUNABLES]
+    assert tunables[0]["value"] == 1.0
+    assert driver["conditions"] == experimenter["conditions"]
+
+
+def told_of(session: DriveOnPages) -> list[dict[str, Any]]:
+    """Let the session send to a list."""
+    told: list[dict[str, Any]] = []
+    session.broadcast.send = told.append  # type: ignore[assignment,method-assign]  # instead of sockets
+    return told
+
+
+@pytest.mark.parametrize(
+    ("kind", "text", "name", "value"),
+    [
+        ("gain", "preview_time 1.5 -> 2.25 s", "preview_time", 2.25),
+        ("condition", "weak-gentle", "strength_factor", 0.4),
+        ("condition", "weak-gentle", "change_duration", 8.0),
+        ("condition", "manual", "strength_factor", 0.0),
+        ("method", "manual", "strength_factor", 0.0),
+    ],
+)
+def test_change_is_told_to_all_pages_with_the_values_that_hold_now(
+    session: DriveOnPages, kind: str, text: str, name: str, value: float
+) -> None:
+    told = told_of(session)
+    session._mark({"time": 1.0, "kind": kind, "text": text})
+    assert told[0] == {"type": "marker", "time": 1.0, "kind": kind, "text": text}
+    values = {each["name"]: each["value"] for each in told[1]["tunables"]}
+    assert values[name] == value
+    tunables: Any = session.hello("experimenter")["tunables"]
+    assert {each["name"]: each["value"] for each in tunables} == values
+
+
+def test_marker_that_changes_nothing_is_told_alone(session: DriveOnPages) -> None:
+    told = told_of(session)
+    session._mark({"time": 1.0, "kind": "paused", "text": "by the driver"})
+    assert [each["type"] for each in told] == ["marker"]
+
+
+def test_account_says_how_late_frames_and_pages_were(session: DriveOnPages) -> None:
+    frame = np.zeros(len(FRAME_COLUMNS))
+    for late in (0.0, 0.0, 0.0, 0.004):
+        frame[PLACE["lateness"]] = late
+        session._tell(frame)
+    session.apply("driver", Latency((5.0, 6.0, 7.0)))
+    steps, pages = session.account()
+    assert steps.startswith("25.00 % of 4 control steps")
+    assert "latest 4.0 ms" in steps
+    assert "median 6.0 ms" in pages
+
+
+def test_whoever_else_listens_is_told_the_same(session: DriveOnPages) -> None:
+    frames: list[Any] = []
+    markers: list[Any] = []
+    session.also(frames.append, markers.append)
+    session._tell(np.ones(len(FRAME_COLUMNS)))
+    session._mark({"time": 0.0, "kind": "started", "text": ""})
+    assert len(frames) == 1
+    assert markers[0]["kind"] == "started"
