@@ -15,10 +15,12 @@ import argparse
 import csv
 import gzip
 import os
+from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
+from numba import njit
 from numpy.typing import NDArray
 
 from costeer.controller.actuation import STRONG
@@ -39,6 +41,7 @@ from costeer.runtime.wheels.simulated import (
 )
 from costeer.sensing.torque_observer import (
     TorqueObserverParameters,
+    TorqueObserverState,
     WheelMotion,
     initial_state,
     step,
@@ -47,7 +50,7 @@ from costeer.sensing.torque_observer import (
 NUM_DEVICES = 100
 NUM_DRIVERS = 12
 DT = 1.0 / 960.0
-PART = 120.0
+PART = 60.0
 """Driven of each trial [s]."""
 DEFAULT_DATA = "../shared/data"
 
@@ -116,7 +119,7 @@ def print_errors(
 
 
 class Driven(NamedTuple):
-    """A trial of a virtual driver at 960 Hz; torques [N·m], angle [rad]."""
+    """A trial of a virtual driver at 960 Hz: torques [N·m], angle and its rate."""
 
     driver: Signal
     guidance: Signal
@@ -168,7 +171,7 @@ class Judged(NamedTuple):
 
 def judged(estimate: Signal, truth: Signal, dt: float, longest: float) -> Judged:
     """Hold an estimate against the truth, also shifted by up to `longest` [s]."""
-    shifts = range(round(longest / dt) + 1)
+    shifts = range(0, round(longest / dt) + 1, max(round(0.002 / dt), 1))
     size = truth.size
 
     def correlation(shift: int) -> float:
@@ -208,26 +211,51 @@ class Hands:
         return torque
 
 
-def estimates(
-    device: SimulatedWheelParameters,
-    known: WheelCalibration,
-    observer: TorqueObserverParameters,
-    drive: Driven,
-) -> tuple[Signal, Signal]:
-    """Torque of the hands as it was and as the observer saw it [N·m]."""
+class Watched(NamedTuple):
+    """What an observer may see of a device that is held, and the truth.
+
+    Attributes:
+        motions: Angle [rad] and the motor's torque [N·m], shape `(time, 2)`.
+        hands: Torque of the hands [N·m].
+    """
+
+    motions: Signal
+    hands: Signal
+
+
+def watched(device: SimulatedWheelParameters, participant: int) -> Watched:
+    """A device held by a virtual driver; its motor makes the column of costeer."""
+    drive = driven(participant)
     hands = Hands(drive)
-    wheel = SimulatedWheel(device, known, hands)
+    wheel = SimulatedWheel(device, true_calibration(device), hands)
     column = ColumnParameters()
-    state, motor, seen = initial_state(), 0.0, np.zeros(drive.driver.size)
-    for i in range(seen.size):
+    motions = np.zeros((drive.driver.size, 2))
+    motor = rate = last = 0.0
+    for i, guidance in enumerate(drive.guidance.tolist()):
         wheel.write(motor)
         angle = wheel.read().steering_wheel_angle
-        state, seen[i] = step(observer, state, WheelMotion(angle, np.nan, motor), DT)
-        # The rest of the column of costeer, as the real-time loop would render it.
-        rest = column.stiffness * angle + 0.5 * state.steering_wheel_rate
-        asked = float(drive.guidance[i]) - rest
+        motions[i] = angle, motor
+        rate += ((angle - last) / DT - rate) * 0.1  # a lag of 10 ms
+        last = angle
+        # Of the column's damping the device and its latency bear half.
+        asked = guidance - column.stiffness * angle - 0.5 * rate
         motor = max(-wheel.torque_limit, min(wheel.torque_limit, asked))
-    return hands.torques, seen
+    return Watched(motions, hands.torques)
+
+
+@njit
+def estimates(
+    parameters: TorqueObserverParameters,
+    state: TorqueObserverState,
+    motions: Signal,
+    dt: float,
+) -> Signal:
+    """What the observer says at each reading of angle and motor torque [N·m]."""
+    seen = np.empty(len(motions))
+    for i in range(len(motions)):
+        motion = WheelMotion(motions[i, 0], np.nan, motions[i, 1])
+        state, seen[i] = step(parameters, state, motion, dt)
+    return seen
 
 
 def wrong_by(factor: float, known: WheelCalibration) -> TorqueObserverParameters:
@@ -262,24 +290,30 @@ def print_trials(
 ) -> None:
     """The observer on devices held by virtual drivers."""
     results: dict[str, list[Judged]] = {}
-    for n in range(NUM_DRIVERS):
-        device, known = devices[n], calibrations[n]
-        truth = true_calibration(device)
-        drive = driven(n + 1)
+    with ProcessPoolExecutor(2) as pool:
+        drives = pool.map(watched, devices[:NUM_DRIVERS], range(1, NUM_DRIVERS + 1))
+        held = list(drives)
+    for n, (motions, hands) in enumerate(held):
+        truth = true_calibration(devices[n])
+        right = observer_parameters(truth)
         observers = {
-            "true parameters": observer_parameters(truth),
-            "as the self-test found": observer_parameters(known),
+            "true parameters": right,
+            "as the self-test found": observer_parameters(calibrations[n]),
             "20 % too small": wrong_by(0.8, truth),
             "20 % too large": wrong_by(1.2, truth),
-            "no friction known": observer_parameters(truth)._replace(friction=0.0),
+            "no friction known": right._replace(friction=0.0),
         }
         for name, observer in observers.items():
-            hands, seen = estimates(device, truth, observer, drive)
-            results.setdefault(name, []).append(judged(seen, hands, DT, 0.1))
+            seen = estimates(observer, initial_state(), motions, DT)
+            results.setdefault(name, []).append(judged(seen, hands, DT, 0.15))
     print(f"\nobserver, {NUM_DRIVERS} devices and virtual drivers, {PART:.0f} s each")
     print(HEADING)
     for name, each in results.items():
         print_row(name, each)
+    print("  each device as the self-test found it, by its friction [N·m]")
+    frictions = [device.friction for device in devices[:NUM_DRIVERS]]
+    for n in np.argsort(frictions):
+        print_row(f"  {frictions[n]:.2f}", [results["as the self-test found"][n]])
 
 
 class Part(NamedTuple):
@@ -311,11 +345,8 @@ def real_estimate(column: TorqueObserverParameters, part: Part) -> Signal:
     observer = column._replace(
         time_constant=0.1, rate_time_constant=0.05, still_rate=0.05
     )
-    state, seen = initial_state(float(part.angle[0])), np.zeros(part.angle.size)
-    for i, angle in enumerate(part.angle.tolist()):
-        motion = WheelMotion(angle, float("nan"), 0.0)
-        state, seen[i] = step(observer, state, motion, 0.05)
-    return seen
+    motions = np.column_stack([part.angle, np.zeros_like(part.angle)])
+    return estimates(observer, initial_state(float(part.angle[0])), motions, 0.05)
 
 
 def print_real(folder: Path) -> None:
@@ -364,7 +395,8 @@ def main() -> None:
     arguments = parser.parse_args()
     random = np.random.default_rng(2)
     devices = [drawn(random) for _ in range(max(arguments.devices, NUM_DRIVERS))]
-    calibrations = [found(device) for device in devices]
+    with ProcessPoolExecutor(2) as pool:
+        calibrations = list(pool.map(found, devices))
     print_errors(devices, calibrations)
     print_trials(devices, calibrations)
     print_real(arguments.data)

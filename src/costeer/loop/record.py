@@ -156,7 +156,8 @@ def stream_table(path: Path) -> tuple[pa.Table, list[object]]:
         OSError: If it cannot be read.
     """
     content = path.read_bytes()
-    batches, markers = [], []
+    batches: list[pa.RecordBatch] = []
+    markers: list[object] = []
     try:
         reader = pa.ipc.open_stream(pa.BufferReader(content))
         while True:

@@ -40,7 +40,7 @@ from costeer.runtime.hands import (
 from costeer.runtime.hands import step as move_hands
 from costeer.runtime.setup import PLANT_DT, PLANT_STEPS, DriveSetup, drive_parameters
 from costeer.runtime.tunables import Tunable, place_of
-from costeer.runtime.wheels.calibration import WheelCalibration
+from costeer.runtime.wheels.calibration import observer_parameters
 from costeer.runtime.wheels.interface import Wheel, WheelReading
 from costeer.sensing.torque_observer import TorqueObserverParameters
 
@@ -230,7 +230,7 @@ class Cabin:
         """Take a reading and find the driver's torque in it."""
         if self._observer is None:
             self._observer = observer_memory(
-                observer_parameters(self._setup.calibration),
+                self._observed_device(),
                 reading.steering_wheel_angle,
             )
         observer = self._observer
@@ -245,6 +245,13 @@ class Cabin:
         self.reading = reading._replace(
             steering_wheel_rate=observer.steering_wheel_rate
         )
+
+    def _observed_device(self) -> TorqueObserverParameters:
+        """The observer of the device as its calibration found it."""
+        calibration = self._setup.calibration
+        if calibration is None:
+            return TorqueObserverParameters()
+        return observer_parameters(calibration)
 
     def _rendered(self) -> float:
         """Move the car on with the wheel's angle; return the torque to give [N·m]."""
@@ -293,17 +300,3 @@ def guard_parameters(wheel: Wheel | None) -> GuardParameters:
     if wheel is None:
         return usual
     return usual._replace(torque_limit=min(usual.torque_limit, wheel.torque_limit))
-
-
-def observer_parameters(
-    calibration: WheelCalibration | None,
-) -> TorqueObserverParameters:
-    """The observer of a device as its calibration found it."""
-    if calibration is None:
-        return TorqueObserverParameters()
-    return TorqueObserverParameters(
-        inertia=calibration.inertia,
-        damping=calibration.damping,
-        friction=calibration.friction,
-        latency=calibration.latency,
-    )

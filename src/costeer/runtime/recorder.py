@@ -106,4 +106,5 @@ class Recorder:
         kept = (frames[:, PLACE["run_state"]] == RUNNING) & (time > self._last_time)
         if kept.any():
             self._last_time = float(time[kept][-1])
-        return frames[kept]
+        running: NDArray[np.float64] = frames[kept]
+        return running

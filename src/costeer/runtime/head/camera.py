@@ -34,7 +34,7 @@ class Webcam:
         self,
         address: str,
         parameters: TrackerParameters | None = None,
-        clock: Callable[[], float] = time.monotonic,
+        clock: Callable[[], float] = time.perf_counter,
     ) -> None:
         """Open the camera and load the networks.
 

@@ -132,7 +132,7 @@ class LslTracker:
     def __init__(
         self,
         description: HeadDescription,
-        clock: Callable[[], float] = time.monotonic,
+        clock: Callable[[], float] = time.perf_counter,
     ) -> None:
         """Find the stream.
 

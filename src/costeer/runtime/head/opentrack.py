@@ -30,7 +30,7 @@ class Opentrack:
     """
 
     def __init__(
-        self, address: str, clock: Callable[[], float] = time.monotonic
+        self, address: str, clock: Callable[[], float] = time.perf_counter
     ) -> None:
         """Open the port.
 

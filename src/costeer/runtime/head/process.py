@@ -95,5 +95,5 @@ def _follow(
 
 def _tell_lost(sink: HeadSink, last: HeadReading) -> HeadReading:
     """Tell that nothing is seen now; the last angle is held."""
-    sink.put(time.monotonic(), last.head_yaw, False)
+    sink.put(time.perf_counter(), last.head_yaw, False)
     return last

@@ -1,0 +1,1 @@
+"""Steering wheels: one small protocol in N·m and rad, a file per kind of device."""

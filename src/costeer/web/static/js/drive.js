@@ -1,0 +1,205 @@
+/**
+ * Drive: a person at the wheel. Socket, controls, view and messages, put together.
+ */
+
+import { now } from "./clock.js";
+import { Controls, isTyping } from "./controls.js";
+import { byId } from "./elements.js";
+import { Columns } from "./frames.js";
+import { Hud, RUN_STATES, toggleFullScreen } from "./hud.js";
+import { StateBuffer } from "./interpolation.js";
+import { FrameCounter, Latency } from "./latency.js";
+import { Panel } from "./panel.js";
+import { Link, socketAddress } from "./protocol.js";
+import { View } from "./scene/view.js";
+import { Strip } from "./strip.js";
+
+/** Longest time between two inputs [s]: they tell the server that the page lives. */
+const HEARTBEAT = 0.09;
+const PING_SPACING = 500;
+const SECOND = 1000;
+const INDICATOR_KEYS = { KeyZ: 1, Comma: 1, KeyX: -1, Period: -1 };
+
+export class Drive {
+  /**
+   * @param {object} hello answer of `api/hello`
+   * @param {object} options of the page
+   * @param {string} query tokens for the server
+   */
+  constructor(hello, options, query) {
+    this.hud = new Hud();
+    this.view = new View(byId("view"), hello, options);
+    this.strip = new Strip(byId("signals"));
+    this.controls = new Controls();
+    this.latency = new Latency();
+    this.pictures = new FrameCounter();
+    this.states = new FrameCounter();
+    this.counters = options.counters ? byId("counters") : null;
+    this.frames = 0;
+    this.lastFrame = null;
+    this.state = "connecting";
+    this.sentText = "";
+    this.sentTime = 0;
+    this.panel = null;
+    this.greet(hello);
+    this.link = new Link(socketAddress(location, query), {
+      hello: (message) => this.greet(message),
+      frames: (buffer, received) => this.receive(buffer, received),
+      text: (message, received) => this.read(message, received),
+      closed: (reason) => {
+        this.enter("lost");
+        if (reason) this.hud.note(reason);
+      },
+    });
+    this.enter("connecting");
+    this.listen();
+    requestAnimationFrame((time) => this.draw(time));
+  }
+
+  /** Take over a hello: the first, and each one after a lost connection. */
+  greet(hello) {
+    this.hello = hello;
+    this.columns = new Columns(hello.columns);
+    this.buffer = new StateBuffer(this.columns, hello.rate ?? 60);
+    // A force-feedback wheel is a gamepad for the browser too; the server reads it better.
+    this.controls.mayUseGamepad = hello.input !== "wheel";
+    this.latency.ofWheel = hello.input === "wheel";
+    this.maySeeSignals = hello.role === "experimenter" || hello.show_signals !== false;
+    this.strip.isShown = this.maySeeSignals && !this.isStripClosed;
+    this.hud.describeKeys("drive", hello.role);
+    if (this.link && hello.role === "experimenter") this.panel = new Panel(hello, this.link);
+    if (this.link) this.enter("waiting");
+  }
+
+  listen() {
+    addEventListener("keydown", (event) => this.keyDown(event));
+    addEventListener("keyup", (event) => this.controls.key(event.code, false) && this.sendInput());
+    document.addEventListener("visibilitychange", () => {
+      if (document.hidden && this.state === "running") this.link.send({ type: "pause" });
+    });
+    setInterval(() => this.sendInput(), 20);
+    setInterval(() => this.link.send({ type: "ping", t: now() * 1000 }), PING_SPACING);
+    setInterval(() => this.everySecond(), SECOND);
+  }
+
+  keyDown(event) {
+    if (isTyping(event.target) || event.ctrlKey || event.metaKey || event.altKey) return;
+    if (this.controls.key(event.code, true)) {
+      this.sendInput();
+      event.preventDefault();
+    } else if (!event.repeat && this.command(event.code, event.key)) event.preventDefault();
+  }
+
+  /** Do what a key commands; tell whether it is a command. */
+  command(code, key) {
+    if (code in INDICATOR_KEYS) this.indicate(INDICATOR_KEYS[code]);
+    else if (code === "Enter" || code === "NumpadEnter" || code === "Space") this.goOn();
+    else if (code === "KeyP") this.state === "paused" ? this.goOn() : this.link.send({ type: "pause" });
+    else if (code === "KeyH" || key === "?") this.hud.toggleHelp();
+    else if (code === "KeyF") toggleFullScreen();
+    else if (code === "KeyS") this.toggleStrip();
+    else if (code === "KeyE") this.panel?.toggle();
+    else return false;
+    return true;
+  }
+
+  goOn() {
+    if (this.state === "waiting") this.link.send({ type: "start" });
+    if (this.state === "paused") this.link.send({ type: "resume" });
+  }
+
+  /** The same side again switches the indicator off. */
+  indicate(side) {
+    const current = this.lastFrame ? this.columns.finite(this.lastFrame, "indicator") : 0;
+    this.link.send({ type: "indicator", side: current === side ? 0 : side });
+  }
+
+  toggleStrip() {
+    if (!this.maySeeSignals) return;
+    this.strip.isShown = !this.strip.isShown;
+    this.isStripClosed = !this.strip.isShown;
+  }
+
+  /** Send hands and feet if they moved or if the server has to hear from the page. */
+  sendInput() {
+    const controls = this.controls.read();
+    const text = JSON.stringify(controls);
+    const time = now();
+    if (text === this.sentText && time - this.sentTime < HEARTBEAT) return;
+    [this.sentText, this.sentTime] = [text, time];
+    if (this.link.connected) this.latency.inputSent(this.link.sendInput(controls));
+  }
+
+  receive(buffer, received) {
+    for (const frame of this.columns.split(buffer)) {
+      this.buffer.push(frame, received);
+      this.strip.push(this.columns, frame);
+      this.latency.frameReceived(this.columns, frame, received);
+      this.states.tick(received);
+      this.frames += 1;
+      this.lastFrame = frame;
+    }
+    if (!this.lastFrame) return;
+    const name = RUN_STATES[this.columns.finite(this.lastFrame, "run_state")] ?? "running";
+    this.enter(name, this.columns.finite(this.lastFrame, "fault"));
+  }
+
+  /** Read a text message. */
+  read(message, received) {
+    if (message.type === "pong") this.latency.pong(message, received);
+    else if (message.type === "state") this.panel?.state(message);
+    else if (message.type === "error") this.hud.note(message.text, 6);
+    else if (message.type === "marker" && this.hello.role === "experimenter") {
+      this.hud.note(message.text || message.kind);
+    }
+  }
+
+  enter(state, fault = 0) {
+    this.state = state;
+    this.hud.state(state, fault);
+  }
+
+  everySecond() {
+    this.link.sendLatencies(this.latency.takeUnsent());
+    const figures = this.figures();
+    this.panel?.show(figures);
+    if (!this.counters) return;
+    const { input } = figures.latency;
+    const delay = Number.isFinite(input.p50) ? `, ${input.p50.toFixed(0)} ms` : "";
+    this.counters.textContent = `${figures.fps.toFixed(0)} fps${delay}`;
+  }
+
+  figures() {
+    const value = (name) => (this.lastFrame ? this.columns.value(this.lastFrame, name) : Number.NaN);
+    return {
+      fps: this.pictures.fps,
+      frameRate: this.states.fps,
+      latency: this.latency.summary(),
+      lateness: value("lateness"),
+      computeTime: value("compute_time"),
+    };
+  }
+
+  draw(time) {
+    requestAnimationFrame((next) => this.draw(next));
+    this.pictures.tick(time / 1000);
+    const state = this.buffer.at(now());
+    if (state) this.view.update(this.columns, state);
+    this.view.render();
+    this.strip.paint(time / 1000);
+  }
+
+  /** What tests and curious people may read as `window.costeer`. */
+  get report() {
+    const { lastFrame } = this;
+    return {
+      mode: "drive",
+      fps: this.pictures.fps,
+      frameRate: this.states.fps,
+      latency: this.latency.summary(),
+      frames: this.frames,
+      lastFrame: lastFrame && this.columns.named(lastFrame),
+      state: this.state,
+    };
+  }
+}

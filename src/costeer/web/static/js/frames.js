@@ -1,0 +1,66 @@
+/**
+ * Frames: rows of numbers whose columns have names.
+ *
+ * A frame is a Float64Array; `Columns` knows which number is what.
+ */
+
+/** Columns that jump: between two frames the newer one holds. */
+const STEPPED = new Set([
+  "lane", "head_yaw_valid", "target_lane", "consistent", "intention", "mode", "lead_lane",
+  "event", "driver_intention", "run_state", "fault", "input_sequence", "indicator",
+  "condition", "strength_factor", "sent_time", "wheel_time",
+]);
+
+/** A leader that is further off than this from its last place is another one [m]. */
+const LEADER_JUMP = 15;
+
+export class Columns {
+  /** @param {string[]} names */
+  constructor(names) {
+    this.names = names;
+    this.index = new Map(names.map((name, place) => [name, place]));
+    this.stepped = names.map((name) => STEPPED.has(name));
+    this.jumping = names.map((name) => name === "lead_distance");
+  }
+
+  /** The value of a column, NaN where the frame does not have it. */
+  value(frame, name) {
+    const place = this.index.get(name);
+    return place === undefined ? Number.NaN : frame[place];
+  }
+
+  /** The value of a column, or another where it is not a number. */
+  finite(frame, name, otherwise = 0) {
+    const value = this.value(frame, name);
+    return Number.isFinite(value) ? value : otherwise;
+  }
+
+  /** The frame as an object by names. */
+  named(frame) {
+    return Object.fromEntries(this.names.map((name, place) => [name, frame[place]]));
+  }
+
+  /** Frames of a message or a file: views into its buffer, nothing is copied. */
+  split(buffer) {
+    const width = this.names.length;
+    const count = Math.floor(buffer.byteLength / (8 * width));
+    return Array.from({ length: count }, (_, n) => new Float64Array(buffer, 8 * width * n, width));
+  }
+
+  /**
+   * State between two frames.
+   * @param {Float64Array} before
+   * @param {Float64Array} after
+   * @param {number} fraction 0 at `before`, 1 at `after`, more to extrapolate
+   * @param {Float64Array} out is overwritten
+   */
+  blend(before, after, fraction, out) {
+    for (let n = 0; n < out.length; n++) {
+      const [a, b] = [before[n], after[n]];
+      const jumps = this.stepped[n] || (this.jumping[n] && Math.abs(b - a) > LEADER_JUMP);
+      const mixed = a + (b - a) * fraction;
+      out[n] = jumps || Number.isNaN(mixed) ? b : mixed;
+    }
+    return out;
+  }
+}

@@ -1,0 +1,117 @@
+/**
+ * Head-up messages: what to do next, why nothing moves, and which key does what.
+ */
+
+import { byId, make } from "./elements.js";
+
+/** Names of `run_state` in a frame. */
+export const RUN_STATES = ["waiting", "running", "paused", "ended"];
+
+/** Why a trial paused, by `fault` in a frame. */
+const FAULTS = [
+  "", "The wheel was lost. Plug it in again.", "The page did not answer for a moment.",
+  "A sensor stands still.", "A value was not finite; the torque was set to zero.",
+  "The computer was too slow for a moment.",
+];
+
+/** Keys of driving and of replay, for the help. */
+const DRIVING_KEYS = [
+  [["←", "→", "A", "D"], "steer; the wheel under your hands feels the guidance"],
+  [["↑", "↓"], "accelerator and brake"],
+  [["Enter", "Space"], "start, or go on after a pause"],
+  [["P"], "pause"],
+  [["Z", "X"], "indicator left, right; also , and ."],
+  [["S"], "show or hide the signals"],
+  [["F"], "full screen"],
+  [["H"], "show or hide this help"],
+];
+const EXPERIMENTER_KEYS = [[["E"], "show or hide the experimenter's panel"]];
+const REPLAY_KEYS = [
+  [["Space"], "play or stop"],
+  [["←", "→"], "one frame back or on; with Shift one second"],
+  [["↑", "↓"], "faster, slower"],
+  [["Home", "End"], "to the beginning, to the end"],
+  [["S"], "show or hide the signals"],
+  [["F"], "full screen"],
+  [["H"], "show or hide this help"],
+];
+
+function keyList(lines) {
+  const entries = lines.flatMap(([keys, meaning]) => {
+    const caps = keys.flatMap((key) => [make("kbd", {}, key), " "]);
+    return [make("dt", {}, ...caps), make("dd", {}, meaning)];
+  });
+  return make("dl", {}, ...entries);
+}
+
+export class Hud {
+  constructor() {
+    this.banner = byId("banner");
+    this.notice = byId("notice");
+    this.help = byId("help");
+    this.shown = "";
+    this.noticeTimer = 0;
+  }
+
+  /** Fill the help for a mode and a role. */
+  describeKeys(mode, role) {
+    const driving = role === "experimenter" ? [...DRIVING_KEYS, ...EXPERIMENTER_KEYS] : DRIVING_KEYS;
+    const lines = mode === "replay" ? REPLAY_KEYS : driving;
+    this.help.replaceChildren(make("h2", {}, "Keys"), keyList(lines));
+  }
+
+  toggleHelp() {
+    this.help.hidden = !this.help.hidden;
+  }
+
+  /** Show a message in the middle until the next; nothing without a title. */
+  message(title, lines = [], isWarning = false) {
+    const wanted = JSON.stringify([title, lines, isWarning]);
+    if (wanted === this.shown) return;
+    this.shown = wanted;
+    this.banner.hidden = !title;
+    this.banner.classList.toggle("warn", isWarning);
+    const paragraphs = lines.map((line) => make("p", {}, ...withKeys(line)));
+    this.banner.replaceChildren(make("h1", {}, title ?? ""), ...paragraphs);
+  }
+
+  /** Show the message that belongs to a state of the trial. */
+  state(name, fault = 0) {
+    const reason = FAULTS[fault] ?? `Fault ${fault}.`;
+    if (name === "connecting") this.message("Connecting …");
+    else if (name === "lost") {
+      this.message("Connection lost", ["The trial pauses. Trying again …"], true);
+    } else if (name === "waiting") {
+      const lines = ["Press [Enter] or [Space] to start.", "[H] shows the keys."];
+      this.message("Ready", reason ? [reason, ...lines] : lines, Boolean(reason));
+    } else if (name === "paused") {
+      const lines = ["Press [Enter] or [Space] to go on."];
+      this.message("Paused", reason ? [reason, ...lines] : lines, Boolean(reason));
+    } else if (name === "ended") {
+      this.message("The drive is over", [reason || "Thank you."], Boolean(reason));
+    } else this.message("");
+  }
+
+  /** Show a line at the bottom for a few seconds. */
+  note(text, seconds = 4) {
+    this.notice.textContent = text;
+    this.notice.hidden = false;
+    clearTimeout(this.noticeTimer);
+    this.noticeTimer = setTimeout(() => {
+      this.notice.hidden = true;
+    }, seconds * 1000);
+  }
+}
+
+/** Text whose words in brackets become keys. */
+function withKeys(text) {
+  return text.split(/(\[[^\]]+\])/).filter(Boolean).map((part) =>
+    part.startsWith("[") ? make("kbd", {}, part.slice(1, -1)) : part,
+  );
+}
+
+/** Fill the screen with the page, or leave it. */
+export function toggleFullScreen() {
+  if (document.fullscreenElement) document.exitFullscreen();
+  else document.documentElement.requestFullscreen?.().catch(() => {});
+}

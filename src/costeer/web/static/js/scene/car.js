@@ -1,0 +1,160 @@
+/**
+ * Car: a saloon of usual size, built of a few drawn-out side views.
+ */
+
+import {
+  CylinderGeometry, Group, Matrix4, MeshBasicMaterial, PlaneGeometry, Shape,
+} from "../../vendor/three.module.js";
+import { box, coloured, drawnOut, merged, outline, quad } from "./geometry.js";
+import { canvas, shadowTexture, textureOf } from "./textures.js";
+
+/** Over all [m]. */
+export const CAR_LENGTH = 4.55;
+const WIDTH = 1.78;
+const GLASS = "#1d262c";
+const BLACK = "#16181a";
+const WHEEL_PLACES = [1.38, -1.32];
+const WHEEL_RADIUS = 0.32;
+
+/** Side view of the body below the windows: x forward, z up. */
+function bodyShape() {
+  const shape = new Shape();
+  shape.moveTo(-2.18, 0.28);
+  shape.quadraticCurveTo(-2.28, 0.55, -2.2, 0.86);
+  shape.quadraticCurveTo(-2.16, 0.97, -2.0, 0.985);
+  shape.lineTo(0.95, 0.95);
+  shape.quadraticCurveTo(1.95, 0.86, 2.12, 0.68);
+  shape.quadraticCurveTo(2.26, 0.5, 2.2, 0.28);
+  for (const x of WHEEL_PLACES) {
+    shape.lineTo(x + 0.37, 0.24);
+    shape.absarc(x, 0.3, 0.37, -0.16, Math.PI + 0.16, false);
+  }
+  shape.lineTo(-2.18, 0.28);
+  return shape;
+}
+
+/** Half the width of the cabin at a height: it leans in towards the roof. */
+function halfCabin(z) {
+  return 0.815 - 0.36 * Math.max(0, z - 0.94);
+}
+
+const CABIN = [[-1.92, 0.94], [-1.12, 1.39], [-0.85, 1.445], [0.1, 1.455], [0.4, 1.41], [1.22, 0.93]];
+
+/** The cabin, leaning in. */
+function cabin(colour) {
+  const geometry = drawnOut(outline(CABIN), 1.63, 0.05);
+  const { position } = geometry.attributes;
+  for (let n = 0; n < position.count; n++) {
+    position.setY(n, (position.getY(n) * halfCabin(position.getZ(n))) / halfCabin(0.94));
+  }
+  geometry.computeVertexNormals();
+  return coloured(geometry, colour);
+}
+
+/** A window across the car between two heights on a slope, a little in front of it. */
+function crossWindow([x0, z0], [x1, z1], out) {
+  const [low, high] = [halfCabin(z0) - 0.09, halfCabin(z1) - 0.09];
+  const corners = [[x0 + out, low, z0 + 0.02], [x0 + out, -low, z0 + 0.02], [x1 + out, -high, z1 + 0.02], [x1 + out, high, z1 + 0.02]];
+  return quad(out < 0 ? corners : corners.reverse(), GLASS);
+}
+
+/** Windows of one side. */
+function sideWindows(side) {
+  const at = (x, z) => [x, side * (halfCabin(z) + 0.012), z];
+  const panes = [
+    [[-1.5, 0.99], [-0.52, 0.99], [-0.52, 1.36], [-1.0, 1.34]],
+    [[-0.42, 0.99], [0.98, 0.99], [0.36, 1.34], [-0.42, 1.36]],
+  ];
+  return panes.map((pane) => {
+    const corners = pane.map(([x, z]) => at(x, z));
+    return quad(side > 0 ? corners.reverse() : corners, GLASS);
+  });
+}
+
+function wheel(x, side) {
+  const turn = (radius, width, y, colour) =>
+    coloured(new CylinderGeometry(radius, radius, width, 24).translate(x, side * y, WHEEL_RADIUS), colour);
+  return [turn(WHEEL_RADIUS, 0.2, 0.775, BLACK), turn(0.21, 0.02, 0.87, "#aeb4b8")];
+}
+
+/** Lamps at the back, by whether they shine. */
+function rearLamps(colour) {
+  return merged([
+    box([0.06, 0.36, 0.13], [-2.215, 0.66, 0.78], colour),
+    box([0.06, 0.36, 0.13], [-2.215, -0.66, 0.78], colour),
+    box([0.04, 0.34, 0.03], [-1.12, 0, 1.405], colour),
+  ]);
+}
+
+function numberPlate() {
+  const { element, pen } = canvas(256, 128);
+  pen.fillStyle = "#f3f4ef";
+  pen.fillRect(0, 0, 256, 128);
+  pen.strokeStyle = pen.fillStyle = "#1f5a3c";
+  pen.lineWidth = 6;
+  pen.strokeRect(6, 6, 244, 116);
+  pen.font = "600 66px system-ui, sans-serif";
+  pen.textAlign = "center";
+  pen.fillText("20-46", 128, 104);
+  pen.font = "600 26px system-ui, sans-serif";
+  pen.fillText("500", 128, 38);
+  return textureOf(element, { sharpness: 4 });
+}
+
+/** Parts that hang on the outside: bumpers, lamps in front, mirrors. */
+function details(colour) {
+  return [
+    box([0.1, 1.5, 0.16], [-2.18, 0, 0.36], BLACK),
+    box([0.1, 1.2, 0.16], [2.17, 0, 0.4], BLACK),
+    box([0.12, 0.36, 0.1], [2.1, 0.62, 0.68], "#e8eef2"),
+    box([0.12, 0.36, 0.1], [2.1, -0.62, 0.68], "#e8eef2"),
+    box([0.14, 0.2, 0.13], [0.82, 0.93, 1.0], colour),
+    box([0.14, 0.2, 0.13], [0.82, -0.93, 1.0], colour),
+    box([0.02, 1.3, 0.012], [-2.225, 0, 0.64], "#2a2d30"),
+  ];
+}
+
+/** A car of one colour, with its middle at the origin, wheels on z = 0. */
+export class Car {
+  /** @param {import("./workshop.js").Workshop} workshop */
+  constructor(workshop, colour) {
+    this.group = new Group();
+    const body = coloured(drawnOut(bodyShape(), WIDTH, 0.09), colour);
+    const paint = merged([body, cabin(colour), ...details(colour)]);
+    const glass = merged([
+      crossWindow([-1.86, 0.975], [-1.19, 1.355], -0.03),
+      crossWindow([1.13, 0.985], [0.46, 1.365], 0.03),
+      ...sideWindows(1), ...sideWindows(-1),
+    ]);
+    const wheels = WHEEL_PLACES.flatMap((x) => [...wheel(x, 1), ...wheel(x, -1)]);
+    this.group.add(
+      workshop.glossy(paint), workshop.glossy(glass, { roughness: 0.12 }),
+      workshop.mesh(merged(wheels)), this.plate(workshop), this.shadow(workshop),
+    );
+    this.dark = new MeshBasicMaterial({ color: "#7a1016" });
+    this.bright = new MeshBasicMaterial({ color: "#ff2a22" });
+    this.lamps = workshop.plain(rearLamps("#ffffff"));
+    this.lamps.material = this.dark;
+    this.group.add(this.lamps);
+  }
+
+  plate(workshop) {
+    const mesh = workshop.plain(new PlaneGeometry(0.33, 0.165), { map: numberPlate() });
+    mesh.geometry.applyMatrix4(new Matrix4().set(0, 0, -1, 0, -1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 1));
+    mesh.position.set(-2.285, 0, 0.56);
+    return mesh;
+  }
+
+  shadow(workshop) {
+    const look = { map: shadowTexture(), transparent: true, depthWrite: false, fog: false };
+    const mesh = workshop.plain(new PlaneGeometry(5.2, 2.5), look);
+    // Towards the side away from the sun.
+    mesh.position.set(0.12, -0.15, 0.02);
+    return mesh;
+  }
+
+  /** Light or darken the brake lamps. */
+  set braking(isBraking) {
+    this.lamps.material = isBraking ? this.bright : this.dark;
+  }
+}

@@ -1,0 +1,88 @@
+/**
+ * Landmarks: plates with the distance at every 100 m and a bridge now and then.
+ */
+
+import { Group, PlaneGeometry } from "../../vendor/three.module.js";
+import { box, merged } from "./geometry.js";
+import { canvas, textureOf } from "./textures.js";
+
+const PLATE_SPACING = 100;
+const PLATES = 4;
+const BRIDGE_SPACING = 1700;
+const FIRST_BRIDGE = 850;
+
+/** A green plate on a post, with a number that can change. */
+class Plate {
+  constructor(workshop) {
+    this.face = canvas(128, 96);
+    this.texture = textureOf(this.face.element, { sharpness: 4 });
+    this.group = new Group();
+    const face = workshop.plain(new PlaneGeometry(0.62, 0.46), { map: this.texture });
+    // It faces back along the road.
+    face.rotation.set(Math.PI / 2, -Math.PI / 2, 0, "XYZ");
+    face.position.set(-0.03, 0, 1.62);
+    const post = box([0.05, 0.05, 1.9], [0, 0, 0.9], "#b9bfc2");
+    this.group.add(face, workshop.mesh(post));
+    this.number = null;
+  }
+
+  write(number) {
+    if (number === this.number) return;
+    this.number = number;
+    const { pen } = this.face;
+    pen.fillStyle = "#0f6b43";
+    pen.fillRect(0, 0, 128, 96);
+    pen.strokeStyle = pen.fillStyle = "#f5f7f5";
+    pen.lineWidth = 4;
+    pen.strokeRect(4, 4, 120, 88);
+    pen.font = "600 50px system-ui, sans-serif";
+    pen.textAlign = "center";
+    pen.textBaseline = "middle";
+    pen.fillText((number / 10).toFixed(1), 64, 51);
+    this.texture.needsUpdate = true;
+  }
+}
+
+/** A road bridge over both carriageways. */
+function bridge(layout) {
+  const o = layout.outer;
+  const middle = (layout.outerPaved + layout.oppositeFar) / 2;
+  const span = 2 * layout.width + 30;
+  const concrete = "#b4b3ac";
+  const pier = (y) => box([1.1, 0.9, 6], [0, y, 3], concrete);
+  return merged([
+    box([9, span, 1.0], [0, middle, 6.1], concrete),
+    box([9.4, span, 0.25], [0, middle, 6.7], "#a3a29b"),
+    box([0.12, span, 0.9], [-4.5, middle, 7.2], "#c5c9c8"),
+    box([0.12, span, 0.9], [4.5, middle, 7.2], "#c5c9c8"),
+    pier((layout.innerPaved + layout.opposite) / 2),
+    box([8, 3, 8], [0, layout.outerPaved + o * 7, 2.4], "#a5a49c"),
+    box([8, 3, 8], [0, layout.oppositeFar - o * 7, 2.4], "#a5a49c"),
+  ]);
+}
+
+/**
+ * @returns {{group: Group, update: (position: number) => void}} in axes whose origin moves
+ *   along the road with the car
+ */
+export function buildLandmarks(workshop, layout) {
+  const group = new Group();
+  const plates = Array.from({ length: PLATES }, () => new Plate(workshop));
+  const bridges = [0, 1].map(() => workshop.mesh(bridge(layout)));
+  group.add(...plates.map((plate) => plate.group), ...bridges);
+  const y = layout.outerPaved + layout.outer * 0.75;
+  const update = (position) => {
+    const first = Math.floor((position - 20) / PLATE_SPACING) + 1;
+    for (let n = 0; n < PLATES; n++) {
+      const plate = plates[(((first + n) % PLATES) + PLATES) % PLATES];
+      plate.write(first + n);
+      plate.group.visible = first + n >= 0;
+      plate.group.position.set((first + n) * PLATE_SPACING - position, y, 0);
+    }
+    const next = Math.floor((position - FIRST_BRIDGE - 200) / BRIDGE_SPACING) + 1;
+    bridges.forEach((mesh, n) => {
+      mesh.position.x = FIRST_BRIDGE + (next + n) * BRIDGE_SPACING - position;
+    });
+  };
+  return { group, update };
+}

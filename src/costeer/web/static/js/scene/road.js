@@ -1,0 +1,129 @@
+/**
+ * Road: asphalt with its markings, as one texture that repeats every 20 m.
+ *
+ * Markings are part of the texture and not bodies on the road: so they cannot flicker
+ * with it, and far away they are blurred evenly instead of breaking into steps.
+ */
+
+import { Group } from "../../vendor/three.module.js";
+import { merged } from "./geometry.js";
+import { stream } from "./random.js";
+import { ribbon } from "./ribbon.js";
+import { blobs, canvas, grain, grassTexture, textureOf } from "./textures.js";
+
+/** Japanese expressway: dashes of 8 m, gaps of 12 m. */
+const PATTERN = 20;
+const DASH = 8;
+const DASH_WIDTH = 0.15;
+const EDGE_WIDTH = 0.2;
+const PAINT = "#e9e9e2";
+
+/** Places on the texture: across in metres from the carriageway's left edge. */
+function plan(layout, low) {
+  const [height, width] = low ? [1024, 1024] : [2048, 2048];
+  const left = Math.max(layout.outerPaved, layout.innerPaved);
+  return { width, height, across: (y) => ((left - y) / layout.width) * width, left };
+}
+
+function line(pen, map, y, width, from, to) {
+  const [x0, x1] = [map.across(y + width / 2), map.across(y - width / 2)];
+  const [y0, y1] = [(from / PATTERN) * map.height, (to / PATTERN) * map.height];
+  pen.fillStyle = PAINT;
+  pen.fillRect(x0, y0, x1 - x0, y1 - y0);
+  // Worn paint: the asphalt shows through in places.
+  const next = stream(Math.round(1000 * (y + 50)));
+  pen.fillStyle = "rgba(84,86,88,0.5)";
+  for (let n = 0; n < 26 * (to - from); n++) {
+    pen.fillRect(x0 + next() * (x1 - x0), y0 + next() * (y1 - y0), 1 + 2 * next(), 1 + 2 * next());
+  }
+}
+
+/** Slightly darker where wheels run, and a trace of oil between them. */
+function tracks(pen, map, layout) {
+  for (let lane = 0; lane < layout.numLanes; lane++) {
+    const middle = layout.centre(lane);
+    for (const [offset, half, depth] of [[0.78, 0.42, 0.13], [-0.78, 0.42, 0.13], [0, 0.3, 0.06]]) {
+      const [x0, x1] = [map.across(middle + offset + half), map.across(middle + offset - half)];
+      const fade = pen.createLinearGradient(x0, 0, x1, 0);
+      fade.addColorStop(0, "rgba(20,20,22,0)");
+      fade.addColorStop(0.5, `rgba(20,20,22,${depth})`);
+      fade.addColorStop(1, "rgba(20,20,22,0)");
+      pen.fillStyle = fade;
+      pen.fillRect(x0, 0, x1 - x0, map.height);
+    }
+  }
+}
+
+function asphalt(layout, low, sharpness) {
+  const map = plan(layout, low);
+  const { element, pen } = canvas(map.width, map.height);
+  pen.fillStyle = "#66696b";
+  pen.fillRect(0, 0, map.width, map.height);
+  blobs(pen, element, 26, "rgba(40,42,46,0.10)", 21, map.width / 6);
+  blobs(pen, element, 26, "rgba(150,150,145,0.07)", 22, map.width / 6);
+  const tones = ["#5b5e60", "#727577", "#7d8081", "#525557", "#6b6e70"];
+  grain(pen, element, (map.width * map.height) / 22, tones, 23, map.width / 700);
+  tracks(pen, map, layout);
+  const inset = layout.outer * 0.02;
+  line(pen, map, layout.outerEdge - inset, EDGE_WIDTH, 0, PATTERN);
+  line(pen, map, layout.innerEdge + inset, EDGE_WIDTH, 0, PATTERN);
+  for (let lane = 1; lane < layout.numLanes; lane++) {
+    line(pen, map, layout.centre(lane) - layout.lane / 2, DASH_WIDTH, 0, DASH);
+  }
+  return textureOf(element, { repeat: true, sharpness });
+}
+
+/** Ground beside the road: verges, banks, median and the fields beyond. */
+function ground(workshop, layout) {
+  const o = layout.outer;
+  const { outerPaved, innerPaved, opposite, oppositeFar } = layout;
+  const pieces = [
+    [[outerPaved, 0], [outerPaved + o * 1.2, -0.12]],
+    [[outerPaved + o * 1.2, -0.12], [outerPaved + o * 9, -1.3]],
+    [[outerPaved + o * 9, -1.3], [outerPaved + o * 700, -1.3]],
+    [[innerPaved, 0], [opposite, 0]],
+    [[oppositeFar, 0], [oppositeFar - o * 1.2, -0.12]],
+    [[oppositeFar - o * 1.2, -0.12], [oppositeFar - o * 9, -1.3]],
+    [[oppositeFar - o * 9, -1.3], [oppositeFar - o * 700, -1.3]],
+  ];
+  const fromLeft = pieces.map((piece) => piece.sort(([a], [b]) => b - a));
+  const map = grassTexture(workshop.sharpness);
+  const tones = ["#c9c4b0", "#ffffff", "#ffffff", "#e8e6d4", "#c9c4b0", "#ffffff", "#ffffff"];
+  return fromLeft.map((piece, n) => workshop.mesh(ribbon(...piece, tones[n], [10, 10]), { map }));
+}
+
+/** Low kerbs at both sides of the median. */
+function kerbs(layout) {
+  const o = layout.outer;
+  const faces = [];
+  for (const [y, side] of [[layout.innerPaved, o], [layout.opposite, -o]]) {
+    const [foot, edge, back] = [[y, 0], [y, 0.14], [y - side * 0.16, 0.14]];
+    faces.push(side > 0 ? ribbon(foot, edge, "#b5b6b2") : ribbon(edge, foot, "#b5b6b2"));
+    faces.push(side > 0 ? ribbon(edge, back, "#c3c4bf") : ribbon(back, edge, "#c3c4bf"));
+  }
+  return merged(faces);
+}
+
+/**
+ * The road and the ground, around the car; it repeats every 20 m along x.
+ * @param {import("./workshop.js").Workshop} workshop
+ */
+export function buildRoad(workshop, layout) {
+  const road = new Group();
+  const map = asphalt(layout, workshop.low, workshop.roadSharpness);
+  const tile = [layout.width, PATTERN];
+  const left = Math.max(layout.outerPaved, layout.innerPaved);
+  road.add(workshop.mesh(ribbon([left, 0], [left - layout.width, 0], "#ffffff", tile), { map }));
+  road.add(workshop.mesh(oppositeStrip(layout, tile), { map }));
+  road.add(...ground(workshop, layout), workshop.mesh(kerbs(layout)));
+  return road;
+}
+
+/** The other carriageway: the same, turned around, so that its shoulders fit. */
+function oppositeStrip(layout, tile) {
+  const [a, b] = [layout.opposite, layout.oppositeFar];
+  const geometry = ribbon([Math.max(a, b), 0], [Math.min(a, b), 0], "#f4f4f4", tile);
+  const { uv } = geometry.attributes;
+  for (let n = 0; n < uv.count; n++) uv.setXY(n, 1 - uv.getX(n), -uv.getY(n));
+  return geometry;
+}
