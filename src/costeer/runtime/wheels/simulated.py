@@ -169,7 +169,8 @@ def open_simulated(
     cell = content.pop("torque_cell", "")
     if "torque_curve" in content:
         content["torque_curve"] = tuple(tuple(p) for p in content["torque_curve"])
-    hands = no_hands if held_by is None else _held(SpringHands(**held_by))
+    # Its method, since a named tuple is no `Callable` to mypy.
+    hands = no_hands if held_by is None else SpringHands(**held_by).__call__
     return SimulatedWheel(
         SimulatedWheelParameters(**_known(content)),
         calibration,
@@ -177,11 +178,6 @@ def open_simulated(
         torque_cell=TorqueCell(cell) if cell else None,
         clock=clock,
     )
-
-
-def _held(hands: Hands) -> Hands:
-    """Hands as what they do."""
-    return hands
 
 
 def stop_simulated(description: WheelDescription) -> None:
