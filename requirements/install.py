@@ -139,6 +139,8 @@ def fingerprint(name: str) -> str:
         folder / f"{name}.lock",
         folder / "installer.lock",
         ROOT / "pyproject.toml",
+        ROOT / "hatch_build.py",
+        ROOT / "page" / "package-lock.json",
     ]
     digest = hashlib.sha256(f"{ROOT} {sys.version_info[:2]}".encode())
     for file in files:

@@ -20,7 +20,9 @@ const PAINT = "#e9e9e2";
 
 /** Places on the texture: across in metres from the carriageway's left edge. */
 function plan(layout, low) {
-  const [height, width] = low ? [1024, 1024] : [2048, 2048];
+  // Seen along the road a texture is squeezed. Where little is done against it while
+  // drawing, few points along the road keep the lines sharp across it.
+  const [width, height] = low ? [1024, 224] : [2048, 2048];
   const left = Math.max(layout.outerPaved, layout.innerPaved);
   return { width, height, across: (y) => ((left - y) / layout.width) * width, left };
 }
