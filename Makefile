@@ -56,7 +56,8 @@ lock: dev
 		--extra dev -o requirements/dev.lock
 	$(COMPILE) $(BASE) -c requirements/dev.lock -o requirements/base.lock
 	$(COMPILE) $(BASE) -c requirements/dev.lock --extra bench -o requirements/bench.lock
-	@! grep -nE 'https?://' requirements/*.lock
+	$(COMPILE) requirements/page.in -o requirements/page.lock
+	@! grep -nE 'https?://' requirements/*.lock page/package-lock.json
 
 clean:
 	rm -rf .venv out site .coverage .coverage.* .hypothesis .mypy_cache .pytest_cache \

@@ -11,7 +11,7 @@ import pytest
 from tests.architecture.source import ROOT
 
 FOLDER = ROOT / "requirements"
-LOCKS = ("installer", "base", "dev", "bench")
+LOCKS = ("installer", "base", "dev", "bench", "page")
 PIN = re.compile(r"^([a-z0-9.-]+)==(\S+)(.*?)\\?$", re.MULTILINE)
 
 

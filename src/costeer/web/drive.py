@@ -241,8 +241,9 @@ class DriveOnPages:
         told = [self._late.told()] if self._late.num_frames else []
         if len(self.latencies) > 1:
             late = statistics.quantiles(self.latencies, n=20)
+            way = "wheel" if self._options.input == "wheel" else "key through the loop"
             told.append(
-                f"wheel to page: median {statistics.median(self.latencies):.1f} ms, "
+                f"{way} to page: median {statistics.median(self.latencies):.1f} ms, "
                 f"95th percentile {late[-1]:.1f} ms of {len(self.latencies)} frames"
             )
         return told
