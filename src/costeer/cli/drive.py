@@ -15,7 +15,6 @@ from costeer.cli.units import parse_speed
 if TYPE_CHECKING:
     from starlette.types import ASGIApp
 
-    from costeer.export.lsl import TrialOutlet
     from costeer.web.drive import DriveOnPages
     from costeer.web.security import Access
     from costeer.web.serving import Running
@@ -97,6 +96,7 @@ def drive(
     from costeer.runtime.stream import check_free
     from costeer.web.drive import DriveOnPages, PageOptions
     from costeer.web.security import access_for
+    from costeer.web.serving import listening
 
     if record is not None:
         check_free(record)
@@ -121,14 +121,14 @@ def drive(
     signal.signal(signal.SIGTERM, _stop)
     options = PageOptions(input=chosen.input, show_signals=signals)
     access = access_for(host, port)
+    listening(host, port).close()  # before anything is started
     session = DriveOnPages(setup, record, options)
-    outlet = outlet_of(session) if lsl else None
     try:
+        if lsl:
+            send_to_lsl(session)
         run_drive(session, access, browser)
     finally:
         session.stop()
-        if outlet is not None:
-            outlet.close()
     tell_end(session)
 
 
@@ -137,22 +137,28 @@ def _stop(*_: object) -> None:
     raise KeyboardInterrupt
 
 
-def outlet_of(session: DriveOnPages) -> TrialOutlet:
-    """Send the session's frames and markers to Lab Streaming Layer, too."""
-    from costeer.export.lsl import TrialOutlet
+def send_to_lsl(session: DriveOnPages) -> None:
+    """Send the session's frames and markers to Lab Streaming Layer, too.
+
+    Raises:
+        ModuleNotFoundError: If `pylsl` is not installed.
+    """
+    import time
+
+    from costeer.export.lsl import TrialOutlet, lsl_clock
     from costeer.loop.columns import COLUMNS_BY_NAME
-    from costeer.runtime.frame import FRAME_COLUMNS
+    from costeer.runtime.frame import FRAME_COLUMNS, PLACE
 
     units = {
         name: COLUMNS_BY_NAME[name].unit if name in COLUMNS_BY_NAME else "-"
         for name in FRAME_COLUMNS
     }
     outlet = TrialOutlet(units)
+    later = lsl_clock() - time.perf_counter()
     session.also(
-        lambda frame: outlet.push(frame.tolist()),
+        lambda frame: outlet.push(frame.tolist(), frame[PLACE["sent_time"]] + later),
         lambda marker: outlet.mark(str(marker["kind"]), str(marker["text"])),
     )
-    return outlet
 
 
 def run_drive(session: DriveOnPages, access: Access, browser: bool) -> None:
