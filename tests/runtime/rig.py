@@ -75,6 +75,7 @@ class Rig:
         self.now = 1000.0
         self.driving = Driving(setup, links, self.shared, self._clock, self._open)
         self.driving.warm_up()
+        self.driving.open_wheel()
         self._ends = (self._near, far, self._wake, far_wake)
         self.alive(FOR_EVER)
 

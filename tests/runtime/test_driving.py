@@ -99,9 +99,25 @@ def test_condition_method_and_gain_change_while_driving_and_are_told(
     drive.ask("method", "manual")
     assert of(drive.steps(1), "strength_factor")[-1] == 0.0
     markers = drive.heard()[1:]
-    assert [m.kind for m in markers] == ["condition", "gain", "method"]
-    assert markers[1].text == "lateral_error_gain 1.5 -> 2 N·m/m"
+    assert [(m.kind, m.text) for m in markers] == [
+        ("condition", "strong-normal -> weak-gentle"),
+        ("gain", "strength_factor 1 -> 0.4 -"),
+        ("gain", "change_duration 6 -> 8 s"),
+        ("gain", "lateral_error_gain 1.5 -> 2 N·m/m"),
+        ("method", "ibhs -> manual"),
+        ("gain", "strength_factor 0.4 -> 0 -"),
+    ]
     assert markers[0].time == pytest.approx(1 / 60)
+
+
+def test_drive_that_begins_in_manual_assists_as_soon_as_its_condition_does(
+    rig: MakeRig,
+) -> None:
+    drive = rig(drive_setup("manual"))
+    drive.ask("start")
+    assert of(drive.steps(1), "strength_factor")[-1] == 0.0
+    drive.ask("condition", "strong-rapid")
+    assert of(drive.steps(1), "strength_factor")[-1] == 1.0
 
 
 def test_tuned_gain_acts_and_outlives_a_restart(rig: MakeRig) -> None:
@@ -148,6 +164,19 @@ def test_indicator_asks_for_a_lane_change_to_the_lane_that_is_there(
     assert (of(frames, "mode")[2:] == 2.0).all()
     assert of(frames, "target_lane")[-1] == 0.0
     assert of(frames, "indicator")[-1] == -1.0
+
+
+def test_indicator_of_one_trial_asks_for_nothing_in_the_next(rig: MakeRig) -> None:
+    drive = rig(drive_setup()._replace(intention="indicator"))
+    drive.ask("start")
+    drive.steps(60)
+    drive.ask("indicator", -1)
+    drive.steps(1)
+    drive.ask("restart")
+    drive.ask("start")
+    frames = drive.steps(30)
+    assert (of(frames, "mode") == 1.0).all()
+    assert (of(frames, "indicator") == 0.0).all()
 
 
 def test_head_counts_only_while_it_was_seen_lately(rig: MakeRig) -> None:
@@ -219,8 +248,57 @@ def test_stop_fades_out_and_leaves_no_torque(rig: MakeRig) -> None:
     torque = np.abs(of(frames, "wheel_torque"))
     limit = GuardParameters()
     assert np.abs(np.diff(torque)).max() <= limit.torque_rate_limit / 60 + 1e-9
+    # Linear over 0.3 s: half of it is left after nine steps.
+    assert of(frames, "fade")[8] == pytest.approx(0.5, abs=0.06)
+    assert torque[8] / torque[0] == pytest.approx(0.5, abs=0.08)
     assert of(frames, "fade")[-1] == 0.0
     assert torque[-1] == 0.0
+
+
+def test_end_of_the_process_fades_out_first_and_is_marked(rig: MakeRig) -> None:
+    drive = rig(wheel_setup(hands=HANDS._replace(amplitude=0.3)))
+    drive.ask("start")
+    drive.steps(120)
+    drive.ask("stop")
+    torque, steps = [], 0
+    while not drive.driving.stopping:
+        torque += list(np.abs(of(drive.steps(1), "wheel_torque")))
+        steps += 1
+        assert steps < 30
+    assert torque[0] > 0.2
+    assert torque[-1] == 0.0
+    last = drive.heard()[-1]
+    assert (last.kind, last.text) == ("ended", "stopped")
+
+
+def test_sample_that_is_no_number_is_left_out(rig: MakeRig) -> None:
+    drive = rig(wheel_setup(hands=HANDS))
+    drive.ask("start")
+    drive.steps(10)
+    wheel = drive.driving._cabin.wheel
+    assert wheel is not None
+    whole = wheel.read
+    wheel.read = lambda: whole()._replace(steering_wheel_angle=math.nan)  # type: ignore[method-assign]  # a fault, injected
+    short = drive.steps(2)
+    wheel.read = whole  # type: ignore[method-assign]  # the fault is over
+    assert (of(short, "run_state") == RUNNING).all()
+    assert np.isfinite(of(drive.steps(5), "lateral_position")).all()
+    wheel.read = lambda: whole()._replace(steering_wheel_angle=math.nan)  # type: ignore[method-assign]  # and comes back to stay
+    frames = drive.steps(10)
+    assert of(frames, "fault")[-1] == SENSOR_STALE
+    assert of(frames, "run_state")[-1] == PAUSED
+
+
+def test_paddles_set_the_indicator_and_take_it_back(rig: MakeRig) -> None:
+    drive = rig(wheel_setup(hands=HANDS))
+    wheel = drive.driving._cabin.wheel
+    assert wheel is not None
+    whole, pulled = wheel.read, [0]
+    wheel.read = lambda: whole()._replace(buttons=pulled[0])  # type: ignore[method-assign]  # paddles, pulled
+    sides = []
+    for pulled[0] in (0, 1, 1, 0, 2, 0, 2, 0):
+        sides += [float(of(drive.steps(2), "indicator")[-1])]
+    assert sides == [0.0, 1.0, 1.0, 1.0, -1.0, -1.0, 0.0, 0.0]
 
 
 def test_unplugged_wheel_pauses_the_trial_and_says_so(rig: MakeRig) -> None:

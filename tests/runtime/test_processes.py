@@ -20,7 +20,7 @@ from costeer.runtime.drive import Drive, Listener
 from costeer.runtime.frame import PLACE, STALLED
 from costeer.runtime.setup import DriveSetup
 from costeer.runtime.stream import Marker
-from costeer.runtime.wheels.simulated import SpringHands
+from costeer.runtime.wheels.simulated import SpringHands, simulated_description
 from tests.runtime.rig import drive_setup, wheel_setup
 
 PATIENCE = 20.0
@@ -98,7 +98,7 @@ def test_drive_keeps_to_the_clock_with_verdicts_and_leaves_its_record(
     assert columns["time"][-1] >= simulated - 0.05
     assert np.isnan(columns["crossing_probability"][:170]).all()  # window not full
     assert (tmp_path / "trial.wheel.parquet").exists()
-    assert kept.kinds() == ["started"]
+    assert kept.kinds() == ["started", "ended"]
 
 
 @pytest.fixture
@@ -112,12 +112,12 @@ def torque_cell() -> Iterator[tuple[str, NDArray[np.float64]]]:
 
 
 @needs_posix
-@pytest.mark.parametrize("how", [signal.SIGKILL, signal.SIGSTOP], ids=["dead", "stuck"])
+@pytest.mark.parametrize("how", ["SIGKILL", "SIGSTOP", "SIGHUP"])
 def test_wheel_is_let_go_and_the_record_kept_when_the_loop_dies_or_sticks(
     begin: Begin,
     torque_cell: tuple[str, NDArray[np.float64]],
     tmp_path: Path,
-    how: signal.Signals,
+    how: str,
 ) -> None:
     name, cell = torque_cell
     setup = wheel_setup(
@@ -126,7 +126,7 @@ def test_wheel_is_let_go_and_the_record_kept_when_the_loop_dies_or_sticks(
     drive, kept = begin(setup, tmp_path / "trial.parquet")
     drive.send("start")
     wait_for(lambda: abs(cell[0]) > 0.3)
-    os.kill(int(drive.pid), how)
+    os.kill(drive.pid, getattr(signal, how))
     stopped = time.monotonic()
     wait_for(lambda: cell[0] == 0.0)
     # 80 ms of patience; beyond 100 ms only what a busy machine adds.
@@ -138,6 +138,25 @@ def test_wheel_is_let_go_and_the_record_kept_when_the_loop_dies_or_sticks(
     assert driven[-1] > kept.column("time")[-1] - 0.3
     time.sleep(0.05)
     assert cell[0] == 0.0
+
+
+@needs_posix
+def test_nobody_drives_on_when_the_watchdog_is_gone(begin: Begin) -> None:
+    drive, kept = begin(drive_setup(), None)
+    drive.send("start")
+    wait_for(lambda: "started" in kept.kinds())
+    os.kill(int(drive._helpers["watchdog"].pid or 0), signal.SIGKILL)
+    wait_for(lambda: "error" in kept.kinds())
+    wait_for(lambda: "paused" in kept.kinds())
+    with pytest.raises(ValueError, match="nobody watches the wheel"):
+        drive.send("resume")
+
+
+def test_wheel_that_is_not_there_is_told_in_its_own_words(begin: Begin) -> None:
+    setup = wheel_setup()
+    broken = simulated_description()._replace(address='{"speed": 1}')
+    with pytest.raises(ValueError, match="speed"):
+        begin(setup._replace(wheel=broken), None)
 
 
 SERVER = """

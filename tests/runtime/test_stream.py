@@ -56,7 +56,7 @@ def test_streams_become_the_record_with_its_markers_and_the_trace(
     stream.write(rows(30, 0), np.full(0, True), [ended])
     stream.write_trace(np.ones((32, len(TRACE_COLUMNS))))
     stream.close()
-    assert finish(paths)
+    assert finish(paths, stream.num_rows)
     record = read_record(paths.record)
     assert record.metadata["markers"] == [gain, ended]
     assert record.metadata["condition"] == "strong-normal"
@@ -79,7 +79,7 @@ def test_drive_that_never_began_leaves_nothing(tmp_path: Path) -> None:
     marker = {"time": 0.0, "kind": "condition", "text": "manual"}
     stream.write(rows(0, 0), np.full(0, True), [marker])
     stream.close()
-    assert not finish(paths)
+    assert not finish(paths, stream.num_rows)
     assert list(tmp_path.iterdir()) == []
 
 
@@ -136,6 +136,22 @@ def test_nothing_that_a_person_drove_is_written_over(tmp_path: Path) -> None:
     with pytest.raises(ValueError, match="exists; choose another --record"):
         check_free(path)
     assert next_free(path) == tmp_path / "trial-2.parquet"
+    # The wheel's trace alone, after its record was moved away, is kept as well.
+    (tmp_path / "trial-2.wheel.parquet").touch()
+    assert next_free(path) == tmp_path / "trial-3.parquet"
+    with pytest.raises(ValueError, match=r"wheel\.parquet exists"):
+        check_free(tmp_path / "trial-2.parquet")
+
+
+def test_damaged_stream_is_kept_and_told(tmp_path: Path) -> None:
+    paths = record_paths(tmp_path / "trial.parquet")
+    stream = RecordStream(paths, METADATA)
+    stream.write(rows(0, 15), np.full(15, True), [])
+    stream.close()
+    paths.stream.write_bytes(b"not a stream")
+    with pytest.raises(ValueError, match="no row"):
+        finish(paths, stream.num_rows)
+    assert paths.stream.exists()
 
 
 def test_record_must_be_named_parquet(tmp_path: Path) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Iterator
 from typing import Any
 
@@ -109,11 +110,19 @@ def test_experimenters_keys_steer_only_while_nobody_else_drives(
 
 
 def test_one_page_drives_and_a_second_is_told_why_not(session: DriveOnPages) -> None:
+    session.drive.press(1, 0.0, 0.0, 0.0)
     session.client_joined("driver")
     session.client_joined("experimenter")
     with pytest.raises(ValueError, match="another page drives already"):
         session.client_joined("driver")
     session.client_left("driver")
+    session.client_joined("driver")
+
+
+def test_page_that_fell_silent_is_replaced(session: DriveOnPages) -> None:
+    session.client_joined("driver")
+    long_ago = time.perf_counter() - 5.0
+    session.drive.shared.mailbox.put(page_time=long_ago)
     session.client_joined("driver")
 
 
@@ -142,10 +151,9 @@ def told_of(session: DriveOnPages) -> list[dict[str, Any]]:
     ("kind", "text", "name", "value"),
     [
         ("gain", "preview_time 1.5 -> 2.25 s", "preview_time", 2.25),
-        ("condition", "weak-gentle", "strength_factor", 0.4),
-        ("condition", "weak-gentle", "change_duration", 8.0),
-        ("condition", "manual", "strength_factor", 0.0),
-        ("method", "manual", "strength_factor", 0.0),
+        ("gain", "strength_factor 1 -> 0.4 -", "strength_factor", 0.4),
+        ("condition", "strong-normal -> weak-gentle", "preview_time", 1.5),
+        ("method", "ibhs -> manual", "preview_time", 1.5),
     ],
 )
 def test_change_is_told_to_all_pages_with_the_values_that_hold_now(
@@ -158,6 +166,19 @@ def test_change_is_told_to_all_pages_with_the_values_that_hold_now(
     assert values[name] == value
     tunables: Any = session.hello("experimenter")["tunables"]
     assert {each["name"]: each["value"] for each in tunables} == values
+
+
+def test_condition_and_method_are_told_as_they_are_now(session: DriveOnPages) -> None:
+    session._mark({"time": 1.0, "kind": "condition", "text": "a -> weak-gentle"})
+    session._mark({"time": 1.0, "kind": "method", "text": "ibhs -> manual"})
+    hello = session.hello("experimenter")
+    assert (hello["condition"], hello["method"]) == ("weak-gentle", "manual")
+
+
+def test_what_could_not_be_done_is_told_to_who_drives(session: DriveOnPages) -> None:
+    told = told_of(session)
+    session._mark({"time": 1.0, "kind": "error", "text": "the wheel is turned"})
+    assert told == [{"type": "error", "text": "the wheel is turned"}]
 
 
 def test_marker_that_changes_nothing_is_told_alone(session: DriveOnPages) -> None:

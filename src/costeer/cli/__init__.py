@@ -33,12 +33,12 @@ class CommandGroup(LazyGroup):
         "evaluate": "Judge the intention network on records or a table.",
         "analyse": "Compute driving measures from records or a table.",
         "report": "Write tables, tests, figures and report.html of a study again.",
-        "drive": "Drive by yourself: wheel, gamepad or keyboard, in the browser.",
-        "replay": "Show a recorded trial in the browser.",
+        "drive": "Drive by yourself: wheel, gamepad or keyboard; Ctrl-C ends it.",
+        "replay": "Show a recorded trial in the browser; Ctrl-C ends it.",
         "wheel": "List, calibrate and test steering wheels.",
-        "head": "Calibrate or test the tracker of a participant's head.",
-        "export": "Write a record for other programs: MCAP, Parquet.",
-        "bench": "Measure the speed of the control step, a trial and a batch.",
+        "head": "Calibrate the tracker of a participant's head, or show what it sees.",
+        "export": "Write a trial record in the format of other programs.",
+        "bench": "Measure the speed of the control step, a trial, a batch or a drive.",
         "doctor": "Show what this computer has and how to mend what is missing.",
     }
     package = "costeer.cli"

@@ -35,7 +35,7 @@ def bench(
     ] = "",
     json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
 ) -> None:
-    """Measure the speed of the control step, a trial and a batch, or of a drive.
+    """Measure the speed of the control step, a trial, a batch or a drive.
 
     Each number is the median of some rounds, with the lowest and the highest. Peers
     come with: pip install 'costeer[bench]'.

@@ -37,7 +37,7 @@ def chosen_wheel(word: str) -> ChosenWheel:
 
     Args:
         word: auto, keyboard, gamepad, simulated, a number of `costeer wheel list`, or
-            can:CHANNEL.
+            can:BUS:CHANNEL.
 
     Raises:
         ValueError: If there is no such wheel, or it is not calibrated.
@@ -77,12 +77,12 @@ def _simulated_wheel() -> ChosenWheel:
 def _named_wheel(word: str) -> WheelDescription:
     from costeer.runtime.wheels.registry import found_wheels
 
-    if word.startswith("can:"):
-        return found_wheels(can=word.removeprefix("can:"))[0]
+    if channel := word.removeprefix("can:") if word.startswith("can:") else "":
+        return found_wheels(can=channel)[0]
     if not word.isdigit():
         raise ValueError(
             f"--wheel is {word!r}; give auto, keyboard, gamepad, simulated, a number "
-            "of `costeer wheel list`, or can:CHANNEL"
+            "of `costeer wheel list`, or can:BUS:CHANNEL"
         )
     found = found_wheels()
     number = int(word)

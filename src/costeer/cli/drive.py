@@ -32,7 +32,7 @@ def drive(
         str,
         typer.Option(
             help="auto (a wheel if there is a calibrated one), keyboard, gamepad, "
-            "simulated, a number of `costeer wheel list`, or can:CHANNEL."
+            "simulated, a number of `costeer wheel list`, or can:BUS:CHANNEL."
         ),
     ] = "auto",
     head: Annotated[
@@ -84,7 +84,7 @@ def drive(
         bool, typer.Option("--browser/--no-browser", help="Open the page.")
     ] = True,
 ) -> None:
-    """Drive by yourself: wheel, gamepad or keyboard, in the browser. Ctrl-C ends it.
+    """Drive by yourself: wheel, gamepad or keyboard; Ctrl-C ends it.
 
     Example:
         costeer drive
@@ -113,12 +113,15 @@ def drive(
         trial=trial_setup(condition, method, trial),
         wheel=chosen.description,
         calibration=chosen.calibration,
+        method=method,
         intention=intention,
         keeps_speed=cruise,
         head=chosen_head(head, participant),
         participant=participant,
     )
-    signal.signal(signal.SIGTERM, _stop)
+    for name in ("SIGTERM", "SIGHUP", "SIGBREAK"):
+        if hasattr(signal, name):
+            signal.signal(getattr(signal, name), _stop)
     options = PageOptions(input=chosen.input, show_signals=signals)
     access = access_for(host, port)
     listening(host, port).close()  # before anything is started
@@ -128,6 +131,9 @@ def drive(
             send_to_lsl(session)
         run_drive(session, access, browser)
     finally:
+        # Not to be cut short: the record becomes whole here.
+        for number in (signal.SIGINT, signal.SIGTERM):
+            signal.signal(number, signal.SIG_IGN)
         session.stop()
     tell_end(session)
 

@@ -67,7 +67,7 @@ def wheel(
         bool, typer.Option("--no-pedals", help="With calibrate: there are no pedals.")
     ] = False,
 ) -> None:
-    """List the steering wheels, calibrate one, or test one against its calibration.
+    """List, calibrate and test steering wheels.
 
     The calibration takes a minute: the user turns the wheel to both ends and presses
     the pedals, then the wheel moves by itself, without hands, for half of it. It finds

@@ -82,19 +82,21 @@ class Controls(NamedTuple):
 class Cabin:
     """One drive from its start to its end.
 
+    It begins without a wheel; `change_wheel` brings one.
+
     Args:
         setup: Of the drive.
-        wheel: That is open; None for virtual hands.
     """
 
-    def __init__(self, setup: DriveSetup, wheel: Wheel | None) -> None:
+    def __init__(self, setup: DriveSetup) -> None:
         self._setup = setup
         self._parameters = drive_parameters(setup)
-        self.wheel = wheel
+        self.wheel: Wheel | None = None
         self.reading: WheelReading | None = None
         self.wheel_torque = 0.0
         self.driver_torque = 0.0
-        self._guard = guard_parameters(wheel)
+        self._wanted = 0.0
+        self._guard = guard_parameters(None)
         self._guard_state = GuardState()
         self._observer: ObserverMemory | None = None
         self._skipped = 0
@@ -111,6 +113,16 @@ class Cabin:
         speed = self._setup.trial.speed
         self._foot = FootState(kept_speed=speed if keeps else math.nan)
         self.first_row()
+
+    def warm_up(self) -> None:
+        """Compile all that will run, on a drive that is thrown away."""
+        memory = person_memory(self._parameters)
+        if self._setup.wheel is None:
+            hands_tick(memory.parameters, memory.motion, memory.held)
+            return
+        wheel_tick(memory.parameters, memory.motion, memory.held, memory.wheel)
+        observer = observer_memory(self._observed_device(), 0.0)
+        observer_tick(observer.parameters, observer.state, observer.reading, PLANT_DT)
 
     def first_row(self) -> NDArray[np.float64]:
         """The row of the car at rest in time; nothing is stepped."""
@@ -213,21 +225,27 @@ class Cabin:
         Raises:
             WheelLost: If the wheel does not answer any more.
         """
+        if self._setup.wheel is None and moving:
+            memory = self.memory
+            hands_tick(memory.parameters, memory.motion, memory.held)
         if self.wheel is None:
-            if moving:
-                memory = self.memory
-                hands_tick(memory.parameters, memory.motion, memory.held)
-            self.wheel_torque = 0.0
             return
-        self._feel(self.wheel.read())
-        wanted = self._rendered() if moving else self.wheel_torque
+        self._feel(self.wheel, self.wheel.read())
+        if moving and self.reading is not None:
+            self._wanted = self._rendered(self.reading)
         self._guard_state, torque = guarded(
-            self._guard, self._guard_state, wanted, moving, fault, PLANT_DT
+            self._guard, self._guard_state, self._wanted, moving, fault, PLANT_DT
         )
         self._give(self.wheel, torque)
 
-    def _feel(self, reading: WheelReading) -> None:
-        """Take a reading and find the driver's torque in it."""
+    def _feel(self, wheel: Wheel, reading: WheelReading) -> None:
+        """Take a reading and find the driver's torque in it.
+
+        One that is not finite is none: the last stays, and grows old.
+        """
+        told = reading.driver_torque if wheel.measures_torque else 0.0
+        if not math.isfinite(reading.steering_wheel_angle + told):
+            return
         if self._observer is None:
             self._observer = observer_memory(
                 self._observed_device(),
@@ -253,13 +271,12 @@ class Cabin:
             return TorqueObserverParameters()
         return observer_parameters(calibration)
 
-    def _rendered(self) -> float:
+    def _rendered(self, reading: WheelReading) -> float:
         """Move the car on with the wheel's angle; return the torque to give [N·m]."""
         memory, calibration = self.memory, self._setup.calibration
-        assert self.reading is not None
         wheel = WheelInput(
-            steering_wheel_angle=self.reading.steering_wheel_angle,
-            steering_wheel_rate=self.reading.steering_wheel_rate,
+            steering_wheel_angle=reading.steering_wheel_angle,
+            steering_wheel_rate=reading.steering_wheel_rate,
             driver_torque=self.driver_torque,
             damping=calibration.damping if calibration else 0.0,
             friction=calibration.friction if calibration else 0.0,
@@ -291,7 +308,7 @@ class Cabin:
         self._guard = guard_parameters(wheel)
         self._guard_state = GuardState()
         self._observer = None
-        self.wheel_torque = 0.0
+        self._wanted = self.wheel_torque = 0.0
 
 
 def guard_parameters(wheel: Wheel | None) -> GuardParameters:

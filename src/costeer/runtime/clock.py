@@ -95,8 +95,10 @@ def favour_thread(level: int = 30) -> None:
         level: Of SCHED_RR, below that of the wheel's loop.
     """
     if hasattr(os, "sched_setscheduler"):
+        # Not for what the thread starts, a browser for example.
+        policy = os.SCHED_RR | os.SCHED_RESET_ON_FORK
         with suppress(PermissionError):
-            os.sched_setscheduler(0, os.SCHED_RR, os.sched_param(level))
+            os.sched_setscheduler(0, policy, os.sched_param(level))
 
 
 def _raise_on_windows() -> Priority:
@@ -106,7 +108,8 @@ def _raise_on_windows() -> Priority:
     kernel = getattr(ctypes, "windll").kernel32  # noqa: B009  absent elsewhere
     high = 0x80
     if kernel.SetPriorityClass(kernel.GetCurrentProcess(), high):
-        return Priority(True, "high priority class")
+        # It is no real-time class: spin as without one.
+        return Priority(False, "high priority class")
     return Priority(False, "the high priority class was not granted")
 
 

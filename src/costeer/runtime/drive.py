@@ -18,20 +18,15 @@ from numpy.typing import NDArray
 from costeer.runtime.clock import favour_thread
 from costeer.runtime.frame import FAULTS, FRAME_COLUMNS, PAUSED, PLACE, STALLED
 from costeer.runtime.head.process import run_head_process
+from costeer.runtime.keeper import Keeper
 from costeer.runtime.links import Links
 from costeer.runtime.process import run_realtime
-from costeer.runtime.recorder import Recorder, drive_metadata
 from costeer.runtime.setup import DriveSetup, check_drive, drive_parameters
 from costeer.runtime.shared import Shared, close_shared, make_shared, open_shared
-from costeer.runtime.stream import (
-    Marker,
-    RecordStream,
-    finish,
-    next_free,
-    record_paths,
-)
+from costeer.runtime.stream import Marker
 from costeer.runtime.verdicts import run_network
 from costeer.runtime.watchdog import Watched, run_watchdog
+from costeer.runtime.wheels.registry import emergency_stop
 
 START_PATIENCE = 180.0
 """The first start compiles for a minute on a slow machine [s]."""
@@ -40,6 +35,14 @@ STOP_PATIENCE = 3.0
 """What a process gets to end by itself [s]."""
 
 _LISTEN_INTERVAL = 0.05
+
+_LOST_HELPERS = {
+    "watchdog": "nobody watches the wheel any more; start costeer drive again",
+    "intention network": "the intention network has ended: no lane change is read "
+    "any more; start costeer drive again",
+    "head tracker": "the head tracker has ended: the head is not seen any more; start "
+    "costeer drive again",
+}
 
 
 class Listener(NamedTuple):
@@ -84,6 +87,7 @@ class Drive:
 
     Raises:
         ValueError: If the drive cannot begin.
+        OSError: If the record could not be written.
     """
 
     def __init__(
@@ -91,23 +95,21 @@ class Drive:
     ) -> None:
         check_drive(setup)
         self.setup = setup
-        self._record = record
         self._listener = listener
+        self._keeper = Keeper(setup, record, self._tell_error)
         self._context = multiprocessing.get_context("spawn")
         self.shared = make_shared()
         self._commands, self._far_commands = self._context.Pipe()
         self._wake, self._far_wake = socket.socketpair()
         self._wake.settimeout(_LISTEN_INTERVAL)
-        self._processes: list[BaseProcess] = []
+        self._realtime: BaseProcess | None = None
+        self._helpers: dict[str, BaseProcess] = {}
         self._threads: list[threading.Thread] = []
-        self._recorder: Recorder | None = None
         self._closing = threading.Event()
         self._stopping = threading.Event()
         self._head_stop = self._context.Event()
-        self._lock = threading.Lock()
-        self._told_stalled = False
+        self._out_of_order = ""
         self.priority = ""
-        self.kept: list[Path] = []
 
     # From start to stop
 
@@ -118,33 +120,37 @@ class Drive:
             ValueError: If the real-time process cannot begin; it says why.
         """
         self._live()
-        links = Links(self.shared.memory.name, self._far_commands, self._far_wake)
-        realtime = self._spawn(run_realtime, self.setup, links)
-        watched = Watched(self.shared.memory.name, self.pid, self.setup.wheel)
-        self._spawn(run_watchdog, watched)
-        self._thread(self._listen)
+        memory = self.shared.memory.name
+        links = Links(memory, self._far_commands, self._far_wake)
+        self._realtime = self._spawned(run_realtime, self.setup, links)
+        watched = Watched(memory, self.pid, self.setup.wheel)
+        self._helpers["watchdog"] = self._spawned(run_watchdog, watched)
         if self.setup.intention == "network":
             absent = ("head_yaw",) if self.setup.head is None else ()
             road = drive_parameters(self.setup).road
-            self._spawn(run_network, self.shared.memory.name, road, absent)
-        self.priority = self._await_ready(realtime)
+            network = self._spawned(run_network, memory, road, absent)
+            self._helpers["intention network"] = network
+        if self.setup.head is not None:
+            sink = MailboxSink(memory)
+            head = self._spawned(
+                run_head_process, self.setup.head, sink, self._head_stop
+            )
+            self._helpers["head tracker"] = head
+        self._thread(self._listen)
+        self.priority = self._await_ready(self._realtime)
+        self._far_commands.close()  # so that its end is noticed
         self._await_helper("watching", "watchdog")
         if self.setup.intention == "network":
             self._await_helper("reading", "intention network")
-        if self.setup.head is not None:
-            sink = MailboxSink(self.shared.memory.name)
-            self._spawn(run_head_process, self.setup.head, sink, self._head_stop)
-        self._begin_record()
-        self._thread(self._hear, realtime)
+        self._thread(self._hear)
 
-    def _spawn(self, target: Callable[..., None], *given: object) -> BaseProcess:
+    def _spawned(self, target: Callable[..., None], *given: object) -> BaseProcess:
         process = self._context.Process(target=target, args=given, daemon=True)
         process.start()
-        self._processes.append(process)
         return process
 
-    def _thread(self, target: Callable[..., None], *given: object) -> None:
-        thread = threading.Thread(target=target, args=given, daemon=True)
+    def _thread(self, target: Callable[[], None]) -> None:
+        thread = threading.Thread(target=target, daemon=True)
         thread.start()
         self._threads.append(thread)
 
@@ -156,26 +162,18 @@ class Drive:
                 word, text = self._commands.recv()
                 if word == "ready":
                     return str(text)
-                self.stop()
                 raise ValueError(str(text))
             if not realtime.is_alive():
                 break
-        self.stop()
-        raise ValueError(
-            "the real-time process did not start; run `costeer doctor` to see what "
-            "this computer lacks"
-        )
+        raise ValueError(_unstarted("real-time process"))
 
     def _await_helper(self, flag: str, name: str) -> None:
         """No trial begins before watchdog and network are there."""
         deadline = time.perf_counter() + START_PATIENCE
         while self.shared.mailbox.get(flag) < 0.5:
-            if time.perf_counter() > deadline:
-                self.stop()
-                raise ValueError(
-                    f"the {name} did not start; run `costeer doctor` to see what this "
-                    "computer lacks"
-                )
+            alive = self._helpers[name].is_alive()
+            if not alive or time.perf_counter() > deadline:
+                raise ValueError(_unstarted(name))
             time.sleep(0.01)
 
     def stop(self) -> None:
@@ -183,27 +181,44 @@ class Drive:
         if self._stopping.is_set():
             return
         self._stopping.set()
+        try:
+            self._end_loop()
+        finally:
+            self._closing.set()
+            self._head_stop.set()
+            self.shared.mailbox.put(dismissed=1.0)
+            for process in self._helpers.values():
+                _end(process)
+            for thread in self._threads:
+                thread.join(STOP_PATIENCE)
+            self._keeper.close()
+            for end in (self._commands, self._wake, self._far_wake):
+                end.close()
+            close_shared(self.shared, unlink=True)
+
+    def _end_loop(self) -> None:
+        """Ask the wheel's loop to end, and end it if it does not."""
+        if self._realtime is None:
+            return
         with suppress(OSError):
             self._commands.send(("stop",))
-        if self._processes:
-            self._processes[0].join(STOP_PATIENCE)
-        self._finish_record()
-        self._closing.set()
-        self._head_stop.set()
-        for process in self._processes:
-            process.terminate()
-        for process in self._processes:
-            process.join(STOP_PATIENCE)
-        for thread in self._threads:
-            thread.join(STOP_PATIENCE)
-        for end in (self._commands, self._wake, self._far_wake):
-            end.close()
-        close_shared(self.shared, unlink=True)
+        self._realtime.join(STOP_PATIENCE)
+        if self._realtime.is_alive():
+            self._realtime.kill()
+            self._realtime.join(STOP_PATIENCE)
+            if self.setup.wheel is not None:
+                with suppress(OSError, ValueError, ModuleNotFoundError):
+                    emergency_stop(self.setup.wheel)
 
     @property
     def pid(self) -> int:
-        """Number of the real-time process."""
-        return int(self._processes[0].pid or 0)
+        """Number of the real-time process; 0 before the start."""
+        return 0 if self._realtime is None else int(self._realtime.pid or 0)
+
+    @property
+    def kept(self) -> list[Path]:
+        """Records that are whole."""
+        return self._keeper.kept
 
     # What comes in
 
@@ -211,8 +226,10 @@ class Drive:
         """Ask the real-time process for something.
 
         Raises:
-            ValueError: If it is no longer there.
+            ValueError: If it is no longer there, or nobody watches it.
         """
+        if self._out_of_order:
+            raise ValueError(self._out_of_order)
         try:
             self._commands.send(command)
         except OSError as error:
@@ -252,8 +269,8 @@ class Drive:
             for frame in frames:
                 self._listener.frame(frame)
 
-    def _hear(self, realtime: BaseProcess) -> None:
-        """Pass on what the real-time process says; notice when it is gone."""
+    def _hear(self) -> None:
+        """Pass on what the real-time process says; notice who is gone."""
         while not self._closing.is_set():
             try:
                 if self._commands.poll(_LISTEN_INTERVAL):
@@ -261,27 +278,37 @@ class Drive:
                     if word == "marker":
                         self._mark(*values)
             except (EOFError, OSError):
-                return
-            if not realtime.is_alive() and not self._stopping.is_set():
-                self._tell_stalled()
+                break
+            self._look_after_helpers()
+        if not self._stopping.is_set():
+            self._tell_stalled()
 
     def _mark(self, when: float, kind: str, text: str) -> None:
-        """Keep and pass on a marker; begin and end records with their trials."""
+        """Keep and pass on a marker."""
         marker: Marker = {"time": when, "kind": kind, "text": text}
-        with self._lock:
-            if self._recorder is not None and kind != "restarted":
-                self._recorder.mark(marker)
+        self._keeper.mark(marker, self.shared)
         self._listener.marker(marker)
-        if kind in ("ended", "restarted"):
-            self._finish_record()
-        if kind == "restarted":
-            self._begin_record()
+
+    def _tell_error(self, text: str) -> None:
+        self._listener.marker({"time": 0.0, "kind": "error", "text": text})
+
+    def _look_after_helpers(self) -> None:
+        """Say once that a helper is gone; without a watchdog nobody drives on."""
+        if self._stopping.is_set():
+            return
+        for name, process in list(self._helpers.items()):
+            if process.is_alive():
+                continue
+            del self._helpers[name]
+            if name == "watchdog" and not self.shared.mailbox.get("stalled"):
+                self.send("pause", _LOST_HELPERS[name])
+                self._out_of_order = _LOST_HELPERS[name]
+            if not self.shared.mailbox.get("stalled"):
+                self._tell_error(_LOST_HELPERS[name])
 
     def _tell_stalled(self) -> None:
-        """Say once that the real-time process is gone; what was driven is kept."""
-        if self._told_stalled:
-            return
-        self._told_stalled = True
+        """Say that the real-time process is gone; what was driven is kept."""
+        self._out_of_order = f"{FAULTS[STALLED]}; start costeer drive again"
         _, frames = self.shared.frames.since(self.shared.frames.written - 1)
         last = frames[-1] if len(frames) else np.full(len(FRAME_COLUMNS), np.nan)
         last[PLACE["run_state"]] = PAUSED
@@ -289,29 +316,22 @@ class Drive:
         self._listener.frame(last)
         when = float(np.nan_to_num(last[PLACE["time"]]))
         self._mark(when, "fault", FAULTS[STALLED])
-        self._finish_record()
+        self._keeper.finish()
 
-    # The record
 
-    def _begin_record(self) -> None:
-        if self._record is None:
-            return
-        paths = record_paths(next_free(self._record))
-        stream = RecordStream(paths, drive_metadata(self.setup))
-        with self._lock:
-            self._recorder = Recorder(self.shared, stream, self._tell_unkept)
-            self._recorder.start()
+def _unstarted(name: str) -> str:
+    return (
+        f"the {name} did not start; run `costeer doctor` to see what this computer "
+        "lacks"
+    )
 
-    def _tell_unkept(self, reason: str) -> None:
-        self._listener.marker({"time": 0.0, "kind": "error", "text": reason})
 
-    def _finish_record(self) -> None:
-        """Make the record whole; a trial that never began leaves none."""
-        with self._lock:
-            recorder, self._recorder = self._recorder, None
-            if recorder is None:
-                return
-            recorder.stop()
-            paths = recorder.stream.paths
-            if finish(paths):
-                self.kept.append(paths.record)
+def _end(process: BaseProcess) -> None:
+    """Let a process end by itself, then end it."""
+    process.join(0.2)
+    if process.is_alive():
+        process.terminate()
+        process.join(STOP_PATIENCE)
+    if process.is_alive():
+        process.kill()
+        process.join(STOP_PATIENCE)

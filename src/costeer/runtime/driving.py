@@ -18,6 +18,7 @@ import numpy as np
 from costeer.loop.rows import ROW_COLUMNS
 from costeer.plant.road import adjacent_side
 from costeer.runtime.cabin import Cabin, Controls
+from costeer.runtime.choices import Choices
 from costeer.runtime.frame import (
     BROWSER_LOST,
     ENDED,
@@ -32,15 +33,11 @@ from costeer.runtime.frame import (
     WAITING,
     WHEEL_LOST,
 )
+from costeer.runtime.indicator import Indicator
 from costeer.runtime.links import Links
-from costeer.runtime.setup import (
-    DriveSetup,
-    drive_parameters,
-    leader_draws,
-    strength_of,
-)
+from costeer.runtime.setup import DriveSetup, drive_parameters, leader_draws
 from costeer.runtime.shared import Shared
-from costeer.runtime.tunables import TUNABLES, checked_value, tunable_named
+from costeer.runtime.tunables import TUNABLES
 from costeer.runtime.wheels.calibration import WheelCalibration
 from costeer.runtime.wheels.interface import (
     Wheel,
@@ -49,7 +46,6 @@ from costeer.runtime.wheels.interface import (
     WheelReading,
 )
 from costeer.runtime.wheels.registry import open_wheel
-from costeer.study.conditions import CONDITION_NAMES, condition
 
 PAGE_PATIENCE = 1.0
 """A drive pauses when no page has said a word for so long [s]."""
@@ -66,8 +62,10 @@ HEAD_PATIENCE = 0.2
 VERDICT_PATIENCE = 6
 """Frames after which the network's last verdict no longer counts [-]."""
 
-REQUEST_DURATION = 0.1
-"""How long the indicator asks for a lane change [s]."""
+STOP_PATIENCE = 0.4
+"""The torque has faded out by then; the process ends anyhow [s]."""
+
+NEVER = math.inf
 
 _LANE = ROW_COLUMNS.index("lane")
 _POSITION = ROW_COLUMNS.index("longitudinal_position")
@@ -105,16 +103,16 @@ class Driving:
         self._opener = opener
         self._mailbox, self._frames = shared.mailbox, shared.frames
         self._trace = shared.trace
-        self._cabin = Cabin(setup, self._opened())
+        self._cabin = Cabin(setup)
         self._road = drive_parameters(setup).road
         self._draws = leader_draws(setup)
         self._frame = np.full(len(FRAME_COLUMNS), np.nan)
         self._traced = np.zeros(len(TRACE_COLUMNS))
-        self._condition = setup.trial.condition
-        self._method = setup.trial.method
+        self._choices = Choices(self._cabin, setup, self._mark)
+        self._indicator = Indicator(self._mark)
         self.stopping = False
+        self._stop_at = NEVER
         self._run_state, self._fault = WAITING, NO_FAULT
-        self._indicator, self._asked_until = 0.0, -1.0
         self._compute_time = 0.0
         self._leaders = 0
         self._last_event = 0.0
@@ -128,21 +126,33 @@ class Driving:
         return self._opener(wheel, calibration)
 
     def warm_up(self) -> None:
-        """Compile everything before the clock runs, then begin anew."""
-        self._cabin.control(Controls())
-        self._cabin.advance(True, self._cabin.wheel is not None)
-        self._cabin.begin()
+        """Compile everything before the wheel is opened: some switch off when idle."""
+        self._cabin.warm_up()
+
+    def open_wheel(self) -> None:
+        """Open the wheel; the loop must begin at once.
+
+        Raises:
+            OSError: If it is not there.
+        """
+        self._cabin.change_wheel(self._opened())
 
     def close(self) -> None:
-        """Take the torque off the wheel and let it go."""
-        self._mailbox.put(armed=0.0)
+        """Take the torque off the wheel and let it go; watched until it is done."""
+        self._mailbox.put(heartbeat=self._clock())
         self._let_go()
+        self._mailbox.put(armed=0.0)
 
     def _let_go(self) -> None:
         """Close the wheel, also one that does not answer."""
         if self._cabin.wheel is not None:
             with suppress(OSError):
                 self._cabin.wheel.close()
+
+    @property
+    def _time(self) -> float:
+        """Of the trial [s]."""
+        return float(self._cabin.memory.row[_TIME])
 
     # The control step, 60 Hz
 
@@ -155,6 +165,7 @@ class Driving:
         start = self._clock()
         self._mailbox.put(heartbeat=start)
         self._hear()
+        self._indicator.look(self._cabin.reading, self._time)
         self._look_around(start)
         if self._run_state == RUNNING:
             row = self._cabin.control(self._controls(start))
@@ -167,7 +178,6 @@ class Driving:
     def _controls(self, now: float) -> Controls:
         """What person, head and network say at this step."""
         box = self._mailbox
-        time_now = float(self._cabin.memory.row[_TIME])
         return Controls(
             steer=box.get("steer"),
             steering=box.get("steering") > 0.5,
@@ -176,7 +186,7 @@ class Driving:
             head_yaw=box.get("head_yaw"),
             head_valid=self._sees_head(now),
             crossing_probability=self._verdict(),
-            requested=self._requests(time_now),
+            requested=self._requests(),
             leader_uniform=float(self._draws[self._leaders % len(self._draws)]),
         )
 
@@ -194,12 +204,12 @@ class Driving:
             return math.nan
         return self._mailbox.get("crossing_probability")
 
-    def _requests(self, now: float) -> bool:
+    def _requests(self) -> bool:
         """Whether the indicator asks for a lane change to where there is a lane."""
-        if self._setup.intention != "indicator" or now > self._asked_until:
+        if self._setup.intention != "indicator":
             return False
         lane = float(self._cabin.memory.row[_LANE])
-        return self._indicator == adjacent_side(self._road, lane)
+        return self._indicator.asks(self._time, adjacent_side(self._road, lane))
 
     def _after(self, row: Any) -> None:  # Any: an array of float64
         """Look at what the step gave: leaders, the end of the course, numbers."""
@@ -232,8 +242,8 @@ class Driving:
             self._compute_time,
             lateness,
             self._cabin.value_of(TUNABLES[0]),
-            float(CONDITION_NAMES.index(self._condition)),
-            self._indicator,
+            self._choices.number,
+            self._indicator.side,
         )
         frame[len(ROW_COLUMNS) :] = extra
         self._frames.put(frame)
@@ -249,9 +259,7 @@ class Driving:
         try:
             self._cabin.advance(moving, self._fault != NO_FAULT)
         except WheelLost:
-            self._let_go()
-            self._cabin.change_wheel(None)
-            self._break_off(WHEEL_LOST)
+            self._lose_wheel()
         now = self._clock()
         self._mailbox.put(heartbeat=now)
         reading = self._cabin.reading
@@ -259,6 +267,14 @@ class Driving:
             self._break_off(SENSOR_STALE)
         if moving:
             self._put_trace(late, now - start)
+
+    def _lose_wheel(self) -> None:
+        """Let go of a wheel that is gone; that may take longer than is watched."""
+        self._mailbox.put(armed=0.0)
+        self._let_go()
+        self._cabin.change_wheel(None)
+        self._mailbox.put(heartbeat=self._clock(), armed=1.0)
+        self._break_off(WHEEL_LOST)
 
     def _put_trace(self, late: float, took: float) -> None:
         """The wheel at the plant's rate, for the record."""
@@ -279,6 +295,8 @@ class Driving:
         """Stop what must not go on: no server, no page, no fresh reading."""
         if now - self._mailbox.get("server_time") > SERVER_PATIENCE:
             self.stopping = True
+        if now > self._stop_at or (self._cabin.fade == 0.0 and self._stop_at < NEVER):
+            self.stopping = True
         if self._run_state != RUNNING:
             return
         if self._setup.needs_page:
@@ -288,7 +306,7 @@ class Driving:
 
     def _break_off(self, fault: int) -> None:
         """Pause for a fault; the torque ends at once, the record is kept."""
-        if self._fault == fault:
+        if self._fault in (fault, NOT_FINITE):
             return
         self._fault = fault
         if self._run_state == RUNNING:
@@ -313,11 +331,13 @@ class Driving:
 
     def _mark(self, kind: str, text: str) -> None:
         """Tell the server what happened, with the time of the trial."""
-        now = float(self._cabin.memory.row[_TIME])
-        self._links.commands.send(("marker", now, kind, text))
+        self._links.commands.send(("marker", self._time, kind, text))
 
     def _do_stop(self) -> None:
-        self.stopping = True
+        if self._run_state in (RUNNING, PAUSED):
+            self._mark("ended", "stopped")
+        self._run_state = ENDED
+        self._stop_at = self._clock() + STOP_PATIENCE
 
     def _do_start(self) -> None:
         if self._run_state == WAITING:
@@ -332,7 +352,7 @@ class Driving:
         if self._setup.wheel is not None and self._cabin.wheel is None:
             self._find_wheel()
         if self._fault == NOT_FINITE:
-            raise ValueError("a number is not finite; restart the trial")
+            raise ValueError(FAULTS[NOT_FINITE])
         if not self._cabin.is_straight():
             raise ValueError("the wheel is turned; turn it straight ahead, then start")
         self._fault = NO_FAULT
@@ -360,34 +380,18 @@ class Driving:
         self._fault = NO_FAULT
         self._cabin.begin()
         self._leaders, self._last_event = 0, 0.0
+        self._indicator.forget()
         self._run_state = WAITING
         self._mark("restarted", "")
 
     def _do_indicator(self, side: float) -> None:
-        self._indicator = float(side)
-        now = float(self._cabin.memory.row[_TIME])
-        self._asked_until = now + REQUEST_DURATION if side else -1.0
-        self._mark("indicator", {-1: "right", 0: "off", 1: "left"}[int(side)])
+        self._indicator.put(float(side), self._time)
 
     def _do_set(self, name: str, value: float) -> None:
-        tunable = tunable_named(name)
-        before = self._cabin.tune(tunable, checked_value(tunable, value))
-        self._mark("gain", f"{name} {before:.9g} -> {value:.9g} {tunable.unit}")
+        self._choices.set(name, value)
 
     def _do_condition(self, name: str) -> None:
-        chosen = condition(name)
-        self._condition = chosen.name
-        self._apply_strength()
-        if math.isfinite(chosen.change_duration):
-            self._cabin.tune(tunable_named("change_duration"), chosen.change_duration)
-        self._mark("condition", chosen.name)
+        self._choices.choose_condition(name)
 
     def _do_method(self, name: str) -> None:
-        self._method = name
-        self._apply_strength()
-        self._mark("method", name)
-
-    def _apply_strength(self) -> None:
-        """The strength factor that condition and method ask for."""
-        factor = strength_of(condition(self._condition), self._method)
-        self._cabin.tune(tunable_named("strength_factor"), factor)
+        self._choices.choose_method(name)

@@ -37,7 +37,7 @@ FAULTS = (
     "the steering wheel is lost: plug it in and resume",
     "the page is lost: open it again and resume",
     "the steering wheel says nothing new: check its cable and resume",
-    "a torque was not finite: resume, or restart the trial",
+    "a number was not finite: restart the trial",
     "the real-time process stood still",
 )
 """What is wrong, by the number in a frame, and the way out."""

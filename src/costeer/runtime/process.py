@@ -9,6 +9,7 @@ from __future__ import annotations
 import gc
 import signal
 import time
+from contextlib import suppress
 
 from costeer.runtime.clock import (
     SPIN,
@@ -26,23 +27,44 @@ from costeer.runtime.shared import Shared, close_shared, open_shared
 
 def run_realtime(setup: DriveSetup, links: Links) -> None:
     """Drive until told to stop or left alone: the target of the spawned process."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the server says when to stop
+    ignore(signal.SIGINT)  # the server says when to stop
     shared = open_shared(links.memory)
+    drive: Driving | None = None
     try:
         drive = Driving(setup, links, shared)
-    except (ValueError, OSError, ModuleNotFoundError) as error:
-        links.commands.send(("failed", str(error)))
-        close_shared(shared, unlink=False)
-        return
-    signal.signal(signal.SIGTERM, lambda *_: setattr(drive, "stopping", True))
-    try:
+        end_at_signals(drive)
         drive.warm_up()
         priority, core = privileged()
+        gc.collect()
+        gc.freeze()
+        gc.disable()
+        drive.open_wheel()
         links.commands.send(("ready", told(priority, core)))
         pace(drive, shared, SPIN_PRIVILEGED if priority.realtime else SPIN)
+    except (ValueError, OSError, ModuleNotFoundError) as error:
+        with suppress(OSError):
+            links.commands.send(("failed", str(error)))
     finally:
-        drive.close()
+        if drive is not None:
+            drive.close()
+        links.commands.close()
         close_shared(shared, unlink=False)
+
+
+def ignore(number: signal.Signals) -> None:
+    """Let a signal pass."""
+    signal.signal(number, signal.SIG_IGN)
+
+
+def end_at_signals(drive: Driving) -> None:
+    """End with the torque off when the system or a closed terminal says so."""
+
+    def end(*_: object) -> None:
+        drive.stopping = True
+
+    for name in ("SIGTERM", "SIGHUP", "SIGQUIT", "SIGBREAK"):
+        if number := getattr(signal, name, None):
+            signal.signal(number, end)
 
 
 def privileged() -> tuple[Priority, int | None]:
@@ -61,9 +83,6 @@ def told(priority: Priority, core: int | None) -> str:
 
 def pace(drive: Driving, shared: Shared, spin: float) -> None:
     """Call the steps at their times until the drive stops; spin so long before [s]."""
-    gc.collect()
-    gc.freeze()
-    gc.disable()
     pacer = Pacer(PLANT_DT, spin)
     shared.mailbox.put(heartbeat=time.perf_counter(), armed=1.0)
     lateness = 0.0

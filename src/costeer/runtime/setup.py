@@ -34,6 +34,7 @@ class DriveSetup(NamedTuple):
 
     Attributes:
         trial: Condition, car, course and speed.
+        method: That assists where the condition does; in manual, none does.
         wheel: The device; None for virtual hands (keyboard, gamepad).
         calibration: Of the device; None for virtual hands.
         intention: One of `INTENTION_SOURCES`.
@@ -44,6 +45,7 @@ class DriveSetup(NamedTuple):
     """
 
     trial: TrialSetup
+    method: str = "ibhs"
     wheel: WheelDescription | None = None
     calibration: WheelCalibration | None = None
     intention: str = "network"

@@ -41,14 +41,15 @@ MAILBOX = (
     "watching",
     "reading",
     "stalled",
+    "dismissed",
 )
 """Newest values only, [s] on the host's monotonic clock where it is a time.
 
 `page_time` is of the last word from a driver's page, `server_time` of the server's own
 life, `verdict_row` the number of the frame that the probability belongs to,
 `heartbeat` of the real-time process, `armed` 1 while the watchdog has to look,
-`watching` 1 once it does, `stalled` 1 once it had to act, and `reading` 1 once the
-network takes frames.
+`watching` 1 once it does, `stalled` 1 once it had to act, `dismissed` 1 once it may go,
+and `reading` 1 once the network takes frames.
 """
 
 _PLACES = {name: place for place, name in enumerate(MAILBOX)}

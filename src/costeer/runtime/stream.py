@@ -65,7 +65,7 @@ def record_paths(record: Path) -> RecordPaths:
 def next_free(record: Path) -> Path:
     """The path itself, or with a number, if a trial has already been recorded there."""
     number, candidate = 1, record
-    while candidate.exists() or record_paths(candidate).stream.exists():
+    while any(path.exists() for path in record_paths(candidate)):
         number += 1
         candidate = record.with_stem(f"{record.stem}-{number}")
     return candidate
@@ -78,9 +78,10 @@ def check_free(record: Path) -> None:
         ValueError: If there is a record, or what is left of one.
     """
     paths = record_paths(record)
-    if paths.record.exists():
-        raise ValueError(f"{paths.record} exists; choose another --record")
-    if paths.stream.exists():
+    for path in (paths.record, paths.trace):
+        if path.exists():
+            raise ValueError(f"{path} exists; choose another --record")
+    if paths.stream.exists() or paths.trace_stream.exists():
         raise ValueError(
             f"{paths.stream} is what a drive left that was cut off; make a record of "
             f"it with: costeer export {paths.stream} --to parquet --out NAME.parquet, "
@@ -107,7 +108,7 @@ class RecordStream:
         self._schema = record_schema(metadata)
         self._file = paths.stream.open("xb")
         self._writer = pa.ipc.new_stream(self._file, self._schema)
-        self._trace_file = paths.trace_stream.open("wb")
+        self._trace_file = paths.trace_stream.open("xb")
         self._trace = pa.ipc.new_stream(self._trace_file, trace_schema())
         self._file.flush()
 
@@ -170,21 +171,25 @@ def trace_schema() -> pa.Schema:
     )
 
 
-def finish(paths: RecordPaths) -> bool:
+def finish(paths: RecordPaths, num_rows: int) -> bool:
     """Make Parquet of the streams and remove them; the last thing of a drive.
+
+    Args:
+        paths: Of the record.
+        num_rows: That were written to the stream.
 
     Returns:
         Whether there was a trial to keep; a drive that never began leaves nothing.
 
     Raises:
+        ValueError: If the stream is damaged; it stays.
         OSError: If the record cannot be written; the streams stay.
     """
-    try:
-        record = read_stream(paths.stream)
-    except ValueError:
+    if num_rows == 0:
         paths.stream.unlink()
         paths.trace_stream.unlink(missing_ok=True)
         return False
+    record = read_stream(paths.stream)
     write_record(paths.record, record)
     _finish_trace(paths)
     paths.stream.unlink()

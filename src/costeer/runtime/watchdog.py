@@ -51,7 +51,7 @@ def stands_still(mailbox: Mailbox, now: float) -> bool:
 
 def run_watchdog(watched: Watched) -> None:
     """Look until there is nothing left to look after: target of a spawned process."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    stay_until_needed_no_more()
     if watched.wheel is not None:
         prepare_stop(watched.wheel)
     raise_priority(level=70)
@@ -59,7 +59,9 @@ def run_watchdog(watched: Watched) -> None:
     mailbox = shared.mailbox
     mailbox.put(watching=1.0)
     try:
-        while not orphaned(mailbox, time.perf_counter()):
+        while not (
+            orphaned(mailbox, time.perf_counter()) or mailbox.get("dismissed") > 0.5
+        ):
             if stands_still(mailbox, time.perf_counter()):
                 act(watched)
                 mailbox.put(stalled=1.0, armed=0.0)
@@ -67,6 +69,13 @@ def run_watchdog(watched: Watched) -> None:
             time.sleep(INTERVAL)
     finally:
         close_shared(shared, unlink=False)
+
+
+def stay_until_needed_no_more() -> None:
+    """Outlive whatever ends the process that is watched: Ctrl-C, a closed terminal."""
+    for name in ("SIGINT", "SIGHUP", "SIGQUIT", "SIGBREAK", "SIGTERM"):
+        if number := getattr(signal, name, None):
+            signal.signal(number, signal.SIG_IGN)
 
 
 def orphaned(mailbox: Mailbox, now: float) -> bool:

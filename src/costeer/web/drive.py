@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import statistics
+import time
 from collections import deque
 from collections.abc import Callable
 from pathlib import Path
@@ -15,6 +16,7 @@ from costeer.base.packing import packed
 from costeer.methods.registry import METHODS, method_named
 from costeer.plant.parameters import wheelbase
 from costeer.runtime.drive import Drive, Listener
+from costeer.runtime.driving import PAGE_PATIENCE
 from costeer.runtime.frame import FRAME_COLUMNS, PLACE
 from costeer.runtime.setup import PLANT_DT, DriveSetup, drive_parameters
 from costeer.runtime.stream import Marker
@@ -81,7 +83,7 @@ class DriveOnPages:
         self._options = options
         self._num_drivers = 0
         self._condition = setup.trial.condition
-        self._method = _shown_method(setup.trial.method)
+        self._method = setup.method
         values = packed(drive_parameters(setup))
         self._values = {t.name: float(values[place_of(t)]) for t in TUNABLES}
         self.drive = Drive(setup, record, Listener(self._tell, self._mark))
@@ -109,28 +111,21 @@ class DriveOnPages:
         """Pass a marker on, and what it changed."""
         for other in self._others:
             other.marker(marker)
-        self.broadcast.send({"type": "marker", **marker})
         kind, text = marker["kind"], str(marker["text"])
+        if kind == "error":  # something could not be done, and who drives must know
+            self.broadcast.send({"type": "error", "text": text})
+            return
+        self.broadcast.send({"type": "marker", **marker})
+        _, _, new = text.partition(" -> ")
         if kind == "condition":
-            self._condition = text
-            self._follow_condition()
+            self._condition = new
         elif kind == "method":
-            self._method = text
-            self._follow_condition()
+            self._method = new
         elif kind == "gain":
-            name, _, change = text.partition(" ")
-            self._values[name] = float(change.split(" -> ")[1].split()[0])
+            self._values[text.partition(" ")[0]] = float(new.split()[0])
         else:
             return
         self.broadcast.send(self._state())
-
-    def _follow_condition(self) -> None:
-        """Strength and duration as the condition sets them."""
-        chosen = condition(self._condition)
-        assists = METHODS[self._method].assists
-        self._values["strength_factor"] = chosen.strength_factor if assists else 0.0
-        if chosen.change_duration == chosen.change_duration:
-            self._values["change_duration"] = chosen.change_duration
 
     def _state(self) -> dict[str, object]:
         """What an experimenter has chosen."""
@@ -217,14 +212,15 @@ class DriveOnPages:
             self.on_stop()
 
     def client_joined(self, role: Role) -> None:
-        """Count the pages that drive.
+        """Count the pages that drive; a new one replaces one that has fallen silent.
 
         Raises:
             ValueError: If another page drives already.
         """
         if role != "driver":
             return
-        if self._num_drivers >= MOST_DRIVERS:
+        silence = time.perf_counter() - self.drive.shared.mailbox.get("page_time")
+        if self._num_drivers >= MOST_DRIVERS and silence < PAGE_PATIENCE:
             raise ValueError(
                 "another page drives already; close it, or open the experimenter's "
                 "address to look on"
@@ -272,8 +268,3 @@ class Lateness:
             f"began more than {1e3 * PLANT_DT:.2f} ms late; the latest "
             f"{1e3 * self._longest:.1f} ms"
         )
-
-
-def _shown_method(name: str) -> str:
-    """The method that was asked for; manual driving hides none."""
-    return name if name in METHODS else "ibhs"

@@ -75,7 +75,8 @@ export class Drive {
     addEventListener("keydown", (event) => this.keyDown(event));
     addEventListener("keyup", (event) => this.controls.key(event.code, false) && this.sendInput());
     document.addEventListener("visibilitychange", () => {
-      if (document.hidden && this.state === "running") this.link.send({ type: "pause" });
+      const drives = this.hello.role === "driver" && this.state === "running";
+      if (document.hidden && drives) this.link.send({ type: "pause" });
     });
     setInterval(() => this.sendInput(), 20);
     setInterval(() => this.link.send({ type: "ping", t: now() * 1000 }), PING_SPACING);

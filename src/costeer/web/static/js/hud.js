@@ -10,8 +10,9 @@ export const RUN_STATES = ["waiting", "running", "paused", "ended"];
 /** Why a trial paused, by `fault` in a frame. */
 const FAULTS = [
   "", "The wheel was lost. Plug it in again.", "The page did not answer for a moment.",
-  "A sensor stands still.", "A value was not finite; the torque was set to zero.",
-  "The computer was too slow for a moment.",
+  "The wheel says nothing new. Check its cable.",
+  "A number was not finite. The trial must be restarted.",
+  "The real-time process stood still. Start costeer drive again.",
 ];
 
 /** Keys of driving and of replay, for the help. */

@@ -1,0 +1,52 @@
+"""The indicator: set from a page or by the wheel's paddles."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from costeer.runtime.wheels.interface import (
+    LEFT_INDICATOR,
+    RIGHT_INDICATOR,
+    WheelReading,
+)
+
+REQUEST_DURATION = 0.1
+"""How long the indicator asks for a lane change once it is set [s]."""
+
+_WORDS = {-1.0: "right", 0.0: "off", 1.0: "left"}
+
+
+class Indicator:
+    """Side of the indicator and what it asks for.
+
+    Args:
+        mark: Takes kind and text of a marker.
+    """
+
+    def __init__(self, mark: Callable[[str, str], None]) -> None:
+        self.side = 0.0
+        self._mark = mark
+        self._asked_until = -1.0
+        self._pulled = 0
+
+    def put(self, side: float, now: float) -> None:
+        """Set it: -1 right, 0 off, +1 left, at a time of the trial [s]."""
+        self.side = side
+        self._asked_until = now + REQUEST_DURATION if side else -1.0
+        self._mark("indicator", _WORDS[side])
+
+    def look(self, reading: WheelReading | None, now: float) -> None:
+        """A paddle that is pulled sets it, or takes it back."""
+        pulled = 0 if reading is None else reading.buttons
+        for bit, side in ((LEFT_INDICATOR, 1.0), (RIGHT_INDICATOR, -1.0)):
+            if pulled & bit and not self._pulled & bit:
+                self.put(0.0 if self.side == side else side, now)
+        self._pulled = pulled
+
+    def asks(self, now: float, side: float) -> bool:
+        """Whether it asks, at this time [s], for the lane on this side."""
+        return self.side == side and now <= self._asked_until
+
+    def forget(self) -> None:
+        """Off, as a new trial begins."""
+        self.side, self._asked_until = 0.0, -1.0
