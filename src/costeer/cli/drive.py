@@ -119,21 +119,26 @@ def drive(
         head=chosen_head(head, participant),
         participant=participant,
     )
-    for name in ("SIGTERM", "SIGHUP", "SIGBREAK"):
-        if hasattr(signal, name):
-            signal.signal(getattr(signal, name), _stop)
     options = PageOptions(input=chosen.input, show_signals=signals)
     access = access_for(host, port)
     listening(host, port).close()  # before anything is started
-    session = DriveOnPages(setup, record, options)
+    _run_to_its_end(DriveOnPages(setup, record, options), access, browser, lsl)
+
+
+def _run_to_its_end(
+    session: DriveOnPages, access: Access, browser: bool, lsl: bool
+) -> None:
+    """Drive until someone stops it; whatever happens, the record becomes whole."""
+    for name in ("SIGTERM", "SIGHUP", "SIGBREAK"):
+        if hasattr(signal, name):
+            signal.signal(getattr(signal, name), _stop)
     try:
         if lsl:
             send_to_lsl(session)
         run_drive(session, access, browser)
     finally:
-        # Not to be cut short: the record becomes whole here.
         for number in (signal.SIGINT, signal.SIGTERM):
-            signal.signal(number, signal.SIG_IGN)
+            signal.signal(number, signal.SIG_IGN)  # not to be cut short
         session.stop()
     tell_end(session)
 
