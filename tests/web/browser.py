@@ -46,7 +46,8 @@ def page_of(width: int = 640, height: int = 360) -> Iterator[tuple[Page, list[st
         browser = playwright.chromium.launch(
             executable_path=chromium(), args=list(CHROMIUM)
         )
-        page = browser.new_page(viewport={"width": width, "height": height})
+        context = browser.new_context(viewport={"width": width, "height": height})
+        page = context.new_page()
         page.on("pageerror", lambda error: wrong.append(str(error)))
         page.on(
             "console",

@@ -108,16 +108,20 @@ def test_experimenter_tunes_what_the_drivers_page_cannot(tmp_path: Path) -> None
         driver.keyboard.press("Enter")
         wait_for(driver, "costeer.lastFrame.run_state === 1")
         wait_for(driver, "costeer.lastFrame.time > 1")
-        experimenter.select_option("#condition", "weak-gentle")
+        choices = experimenter.locator("#panel select")
+        choices.first.select_option("weak-gentle")
         wait_for(experimenter, "Math.abs(costeer.lastFrame.strength_factor-0.4)<1e-9")
-        assert driver.query_selector("#condition:visible") is None
+        assert not driver.locator("#panel").is_visible()
+        experimenter.screenshot(path=tmp_path / "experimenter.png")
         driver.keyboard.press("KeyP")
         wait_for(driver, "costeer.lastFrame.run_state === 2")
         assert "aused" in driver.inner_text("body")
         stop(server.process)
     assert wrong == []
-    kinds = [m["kind"] for m in markers_of(record)]
-    assert kinds == ["started", "condition", "paused"]
+    markers = markers_of(record)
+    kinds = [marker["kind"] for marker in markers]
+    assert kinds == ["started", "condition", "gain", "gain", "paused", "ended"]
+    assert markers[1]["text"] == "strong-normal -> weak-gentle"
 
 
 def markers_of(record: Path) -> list[dict[str, Any]]:
