@@ -81,6 +81,13 @@ def test_participants_calibration_is_taken_with_its_tracker() -> None:
     assert chosen_head("none", "P01") is None
 
 
+def test_what_was_told_of_the_tracker_at_its_calibration_still_holds() -> None:
+    mirrored = HeadDescription("webcam", "0", mirrored=True)
+    known = HeadCalibration("P01", mirrored, gain=1.2)
+    save_calibration(known)
+    assert chosen_head("webcam", "P01") == known
+
+
 def test_tracker_without_a_calibration_is_taken_as_it_is(
     capsys: pytest.CaptureFixture[str],
 ) -> None:

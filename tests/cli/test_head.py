@@ -56,7 +56,7 @@ class Participant:
         time.sleep(0.002)
         asked_deg = (0.0, 0.0, 30.0, -30.0)[self._keyboard.presses]
         tracked = math.radians(self._gain * asked_deg + 4.0)
-        return HeadReading(time.monotonic(), tracked, True)
+        return HeadReading(time.perf_counter(), tracked, True)
 
     def close(self) -> None:
         """Remember it."""

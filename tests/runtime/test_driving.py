@@ -16,6 +16,7 @@ from costeer.runtime.frame import (
     PAUSED,
     RUNNING,
     SENSOR_STALE,
+    STALLED,
     WAITING,
     WHEEL_LOST,
 )
@@ -342,6 +343,30 @@ def test_lost_page_pauses_the_trial(rig: MakeRig) -> None:
     assert of(drive.steps(2), "run_state")[-1] == RUNNING
 
 
+def test_closed_page_pauses_the_trial_at_once(rig: MakeRig) -> None:
+    drive = rig(drive_setup()._replace(needs_page=True))
+    drive.ask("leave")
+    assert of(drive.steps(1), "fault")[-1] == NO_FAULT  # nothing ran
+    drive.ask("start")
+    drive.steps(5)
+    drive.ask("leave")
+    assert of(drive.steps(2), "fault")[-1] == BROWSER_LOST
+
+
+def test_input_is_told_as_applied_in_the_step_that_applied_it(rig: MakeRig) -> None:
+    drive = rig(drive_setup())
+    drive.ask("start")
+    drive.steps(1)
+    drive.shared.mailbox.put(steer=0.5, steering=1.0, input_sequence=3.0)
+    frames = drive.steps(1)
+    assert of(frames, "input_sequence")[0] == 3.0
+    assert of(frames, "intended_angle")[0] > 0.0
+    drive.ask("pause", "")
+    drive.steps(1)
+    drive.shared.mailbox.put(input_sequence=4.0)
+    assert of(drive.steps(1), "input_sequence")[0] == 3.0  # nobody applied it
+
+
 def test_gone_server_ends_the_process(rig: MakeRig) -> None:
     drive = rig(drive_setup())
     drive.steps(1)
@@ -349,6 +374,23 @@ def test_gone_server_ends_the_process(rig: MakeRig) -> None:
     drive.shared.mailbox.put(server_time=drive.now - 6.0)
     drive.steps(1)
     assert drive.driving.stopping
+
+
+def test_loop_that_was_stuck_finds_its_trial_paused_and_can_resume(
+    rig: MakeRig,
+) -> None:
+    drive = rig(wheel_setup(hands=HANDS._replace(amplitude=0.2)))
+    drive.ask("start")
+    drive.steps(80)
+    drive.shared.mailbox.put(stalled=1.0)  # as the watchdog does
+    frames = drive.steps(10)
+    assert of(frames, "fault")[-1] == STALLED
+    assert of(frames, "run_state")[-1] == PAUSED
+    assert (of(frames, "wheel_torque")[4:] == 0.0).all()
+    drive.ask("resume")
+    frames = drive.steps(70)
+    assert (of(frames, "run_state")[1:] == RUNNING).all()
+    assert of(frames, "fade")[2] < 0.1  # anew, from nothing
 
 
 def test_number_that_is_not_finite_pauses_the_trial_without_torque(
@@ -368,6 +410,18 @@ def test_number_that_is_not_finite_pauses_the_trial_without_torque(
     drive.ask("restart")
     drive.ask("start")
     assert np.isfinite(of(drive.steps(5), "lateral_position")).all()
+
+
+def test_trial_does_not_begin_before_the_wheel_tells_its_angle(rig: MakeRig) -> None:
+    drive = rig(wheel_setup())
+    wheel = drive.driving._cabin.wheel
+    wheel.is_awake = False  # type: ignore[union-attr]  # as SDL2 has it after opening
+    drive.ask("start")
+    assert of(drive.steps(1), "run_state")[-1] == WAITING
+    assert "turn the wheel by 10 degrees" in drive.heard()[-1].text
+    wheel.is_awake = True  # type: ignore[union-attr]  # it was turned
+    drive.ask("start")
+    assert of(drive.steps(1), "run_state")[-1] == RUNNING
 
 
 def test_trial_does_not_begin_with_a_turned_wheel(rig: MakeRig) -> None:

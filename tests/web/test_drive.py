@@ -119,6 +119,17 @@ def test_one_page_drives_and_a_second_is_told_why_not(session: DriveOnPages) -> 
     session.client_joined("driver")
 
 
+def test_drive_pauses_as_its_drivers_page_closes_whoever_else_looks_on(
+    session: DriveOnPages, sent: Sent
+) -> None:
+    session.client_joined("driver")
+    session.client_joined("experimenter")
+    session.client_left("experimenter")
+    assert sent.commands == []
+    session.client_left("driver")
+    assert sent.commands == [("leave",)]
+
+
 def test_page_that_fell_silent_is_replaced(session: DriveOnPages) -> None:
     session.client_joined("driver")
     long_ago = time.perf_counter() - 5.0

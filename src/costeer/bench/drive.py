@@ -156,6 +156,9 @@ def _collect(session: DriveOnPages, seconds: float) -> NDArray[np.float64]:
     parts, end = [], time.perf_counter() + seconds
     while time.perf_counter() < end:
         time.sleep(1.0)
+        if drive.shared.mailbox.get("stalled"):
+            with suppress(ValueError):
+                drive.send("resume")  # and its figures tell what it cost
         next_row, rows = drive.shared.trace.since(next_row)
         parts.append(rows)
     return np.concatenate(parts)
@@ -229,6 +232,7 @@ def _steps(material: Material) -> list[Kept]:
     slow = float(np.quantile(compute, 0.999))
     share = float(np.mean(late > PLANT_DT))
     privileged = "not permitted" not in material.priority
+    lasted = float(material.arrivals[-1] - material.arrivals[0])
     return [
         Kept("control step, computing, median", 1e6 * float(np.median(compute)), "us"),
         Kept(
@@ -238,6 +242,9 @@ def _steps(material: Material) -> list[Kept]:
             _verdict(slow, COMPUTE_BUDGET, "1000 us"),
         ),
         Kept("plant steps", float(len(late)), "-"),
+        Kept(
+            "plant steps made of those due", 100.0 * len(late) * PLANT_DT / lasted, "%"
+        ),
         Kept("lateness, median", 1e6 * float(np.median(late)), "us"),
         Kept("lateness, 99 %", 1e6 * float(np.quantile(late, 0.99)), "us"),
         Kept("lateness, largest", 1e3 * float(late.max()), "ms"),

@@ -134,7 +134,7 @@ def chosen_head(word: str, participant: str) -> HeadCalibration | None:
     except ValueError as error:
         note(f"costeer: {error}; until then the tracker's own angle is taken")
         return HeadCalibration("", tracker)
-    if stored.tracker != tracker:
+    if stored.tracker[:2] != tracker[:2]:  # kind and address; the rest was calibrated
         note(
             f"costeer: participant {participant} was calibrated with another head "
             f"tracker; run: costeer head calibrate --participant {participant}"

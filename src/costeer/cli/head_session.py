@@ -123,7 +123,9 @@ def _calibration(
             f"{participant} was calibrated with {found.tracker.kind}, not with "
             f"{tracker.kind}; leave the tracker out, or calibrate again"
         )
-    return found if tracker is None else found._replace(tracker=tracker)
+    if tracker is None or tracker == HeadDescription(*found.tracker[:2]):
+        return found  # whatever else the tracker needs was told when it was calibrated
+    return found._replace(tracker=tracker)
 
 
 def _watch(
@@ -134,8 +136,8 @@ def _watch(
     from costeer.runtime.head.source import HeadLost
 
     readings: dict[float, HeadReading] = {}
-    start = shown = time.monotonic()
-    while time.monotonic() - start < seconds:
+    start = shown = time.perf_counter()
+    while time.perf_counter() - start < seconds:
         try:
             reading = calibrated(calibration, source.read())
         except HeadLost as error:
@@ -143,8 +145,8 @@ def _watch(
             break
         if reading.time >= start:
             readings[reading.time] = reading
-        if time.monotonic() - shown >= SHOWN_EVERY:
-            shown = time.monotonic()
+        if time.perf_counter() - shown >= SHOWN_EVERY:
+            shown = time.perf_counter()
             _show(reading)
     return list(readings.values())
 

@@ -292,9 +292,18 @@ class Cabin:
             wheel.write(torque)
             self._skipped = 0
 
-    def is_straight(self) -> bool:
-        """Whether a real wheel stands so that a trial may begin."""
-        return self.wheel is None or abs(self.steering_wheel_angle) <= STRAIGHT
+    def check_wheel(self) -> None:
+        """Refuse to begin with a real wheel that is turned, or whose angle is unknown.
+
+        Raises:
+            ValueError: If so; it says what to do.
+        """
+        if self.wheel is None:
+            return
+        if not getattr(self.wheel, "is_awake", True):
+            raise ValueError("turn the wheel by 10 degrees and back, then start")
+        if abs(self.steering_wheel_angle) > STRAIGHT:
+            raise ValueError("the wheel is turned; turn it straight ahead, then start")
 
     def meet_wheel(self) -> None:
         """Put the column of the car at the angle of the real wheel."""

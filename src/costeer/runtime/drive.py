@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from costeer.runtime.clock import favour_thread
-from costeer.runtime.frame import FAULTS, FRAME_COLUMNS, PAUSED, PLACE, STALLED
+from costeer.runtime.frame import FRAME_COLUMNS, PAUSED, PLACE, STALLED
 from costeer.runtime.head.process import run_head_process
 from costeer.runtime.keeper import Keeper
 from costeer.runtime.links import Links
@@ -33,6 +33,8 @@ START_PATIENCE = 180.0
 
 STOP_PATIENCE = 3.0
 """What a process gets to end by itself [s]."""
+
+LOOP_GONE = "the real-time process has ended; start costeer drive again"
 
 _LISTEN_INTERVAL = 0.05
 
@@ -233,7 +235,7 @@ class Drive:
         try:
             self._commands.send(command)
         except OSError as error:
-            raise ValueError(f"{FAULTS[STALLED]}; start costeer drive again") from error
+            raise ValueError(LOOP_GONE) from error
 
     def press(
         self, sequence: int, steer: float, accelerator: float, brake: float
@@ -300,22 +302,23 @@ class Drive:
             if process.is_alive():
                 continue
             del self._helpers[name]
-            if name == "watchdog" and not self.shared.mailbox.get("stalled"):
+            if self._realtime is None or not self._realtime.is_alive():
+                return  # the watchdog goes with the loop that it ended
+            if name == "watchdog":
                 self.send("pause", _LOST_HELPERS[name])
                 self._out_of_order = _LOST_HELPERS[name]
-            if not self.shared.mailbox.get("stalled"):
-                self._tell_error(_LOST_HELPERS[name])
+            self._tell_error(_LOST_HELPERS[name])
 
     def _tell_stalled(self) -> None:
         """Say that the real-time process is gone; what was driven is kept."""
-        self._out_of_order = f"{FAULTS[STALLED]}; start costeer drive again"
+        self._out_of_order = LOOP_GONE
         _, frames = self.shared.frames.since(self.shared.frames.written - 1)
         last = frames[-1] if len(frames) else np.full(len(FRAME_COLUMNS), np.nan)
         last[PLACE["run_state"]] = PAUSED
         last[PLACE["fault"]] = STALLED
         self._listener.frame(last)
         when = float(np.nan_to_num(last[PLACE["time"]]))
-        self._mark(when, "fault", FAULTS[STALLED])
+        self._mark(when, "fault", LOOP_GONE)
         self._keeper.finish()
 
 

@@ -29,12 +29,21 @@ from costeer.runtime.frame import (
     PAUSED,
     RUNNING,
     SENSOR_STALE,
+    STALLED,
     TRACE_COLUMNS,
     WAITING,
     WHEEL_LOST,
 )
 from costeer.runtime.indicator import Indicator
 from costeer.runtime.links import Links
+from costeer.runtime.patience import (
+    HEAD_PATIENCE,
+    PAGE_PATIENCE,
+    SERVER_PATIENCE,
+    STOP_PATIENCE,
+    VERDICT_PATIENCE,
+    WHEEL_PATIENCE,
+)
 from costeer.runtime.setup import DriveSetup, drive_parameters, leader_draws
 from costeer.runtime.shared import Shared
 from costeer.runtime.tunables import TUNABLES
@@ -46,24 +55,6 @@ from costeer.runtime.wheels.interface import (
     WheelReading,
 )
 from costeer.runtime.wheels.registry import open_wheel
-
-PAGE_PATIENCE = 1.0
-"""A drive pauses when no page has said a word for so long [s]."""
-
-SERVER_PATIENCE = 5.0
-"""The process ends when the server has shown no life for so long [s]."""
-
-WHEEL_PATIENCE = 0.05
-"""A reading older than this is stale [s]; with the guard's fall it ends by 100 ms."""
-
-HEAD_PATIENCE = 0.2
-"""A head seen longer ago than this is not seen [s]."""
-
-VERDICT_PATIENCE = 6
-"""Frames after which the network's last verdict no longer counts [-]."""
-
-STOP_PATIENCE = 0.4
-"""The torque has faded out by then; the process ends anyhow [s]."""
 
 NEVER = math.inf
 
@@ -113,7 +104,7 @@ class Driving:
         self.stopping = False
         self._stop_at = NEVER
         self._run_state, self._fault = WAITING, NO_FAULT
-        self._compute_time = 0.0
+        self._compute_time = self._applied = 0.0
         self._leaders = 0
         self._last_event = 0.0
         links.wake.setblocking(False)
@@ -168,6 +159,7 @@ class Driving:
         self._indicator.look(self._cabin.reading, self._time)
         self._look_around(start)
         if self._run_state == RUNNING:
+            self._applied = self._mailbox.get("input_sequence")
             row = self._cabin.control(self._controls(start))
             self._after(row)
         else:
@@ -225,7 +217,7 @@ class Driving:
 
     def _tell(self, row: Any, lateness: float) -> None:  # Any: an array of float64
         """Put a frame into the ring and wake the server."""
-        frame, box = self._frame, self._mailbox
+        frame = self._frame
         frame[: len(ROW_COLUMNS)] = row
         if self._run_state != RUNNING:
             frame[_ANGLE] = self._cabin.steering_wheel_angle
@@ -236,7 +228,7 @@ class Driving:
             self._cabin.wheel_torque,
             self._cabin.fade,
             self._cabin.hands.intended_angle,
-            box.get("input_sequence"),
+            self._applied,
             self._clock() if reading is None else reading.time,
             self._clock(),
             self._compute_time,
@@ -254,12 +246,15 @@ class Driving:
 
     def plant_step(self, late: float) -> None:
         """Wheel and car one plant step on."""
+        if self._mailbox.get("stalled") > 0.5:
+            self._break_off(STALLED)
         moving = self._run_state == RUNNING
         start = self._clock()
         try:
             self._cabin.advance(moving, self._fault != NO_FAULT)
         except WheelLost:
             self._lose_wheel()
+            self._break_off(WHEEL_LOST)
         now = self._clock()
         self._mailbox.put(heartbeat=now)
         reading = self._cabin.reading
@@ -274,7 +269,6 @@ class Driving:
         self._let_go()
         self._cabin.change_wheel(None)
         self._mailbox.put(heartbeat=self._clock(), armed=1.0)
-        self._break_off(WHEEL_LOST)
 
     def _put_trace(self, late: float, took: float) -> None:
         """The wheel at the plant's rate, for the record."""
@@ -349,12 +343,14 @@ class Driving:
 
     def _begin(self, kind: str, text: str) -> None:
         """Run, if wheel and numbers allow it."""
+        if self._fault == STALLED:  # the watchdog has told the wheel to let go
+            self._mailbox.put(stalled=0.0)
+            self._lose_wheel()
         if self._setup.wheel is not None and self._cabin.wheel is None:
             self._find_wheel()
         if self._fault == NOT_FINITE:
             raise ValueError(FAULTS[NOT_FINITE])
-        if not self._cabin.is_straight():
-            raise ValueError("the wheel is turned; turn it straight ahead, then start")
+        self._cabin.check_wheel()
         self._fault = NO_FAULT
         self._cabin.meet_wheel()
         self._run_state = RUNNING
@@ -369,6 +365,10 @@ class Driving:
         finally:
             self._mailbox.put(heartbeat=self._clock(), armed=1.0)
 
+    def _do_leave(self) -> None:
+        if self._run_state == RUNNING and self._setup.needs_page:
+            self._break_off(BROWSER_LOST)
+
     def _do_pause(self, why: str) -> None:
         if self._run_state == RUNNING:
             self._run_state = PAUSED
@@ -377,6 +377,9 @@ class Driving:
     def _do_restart(self) -> None:
         if self._fault == WHEEL_LOST:
             raise ValueError(FAULTS[WHEEL_LOST])
+        if self._fault == STALLED:
+            self._mailbox.put(stalled=0.0)
+            self._lose_wheel()
         self._fault = NO_FAULT
         self._cabin.begin()
         self._leaders, self._last_event = 0, 0.0

@@ -38,7 +38,7 @@ FAULTS = (
     "the page is lost: open it again and resume",
     "the steering wheel says nothing new: check its cable and resume",
     "a number was not finite: restart the trial",
-    "the real-time process stood still",
+    "the real-time process stood still: resume, and see costeer doctor for priority",
 )
 """What is wrong, by the number in a frame, and the way out."""
 

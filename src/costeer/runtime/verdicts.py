@@ -27,13 +27,11 @@ from costeer.loop.trial import shipped_network
 from costeer.plant.parameters import RoadParameters
 from costeer.plant.road import adjacent_side
 from costeer.runtime.frame import PLACE, RUNNING
+from costeer.runtime.patience import SERVER_PATIENCE
 from costeer.runtime.shared import close_shared, open_shared
 
 INTERVAL = 0.002
 """Between two looks at the ring [s]."""
-
-SERVER_PATIENCE = 5.0
-"""The process ends when the server has shown no life for so long [s]."""
 
 _SIGNALS = tuple(PLACE[name] for name in IntentionSample._fields)
 _VALID = PLACE["head_yaw_valid"]

@@ -1,9 +1,9 @@
 """The watchdog: a second process that takes the torque off when the first stands still.
 
 It looks at the heartbeat of the real-time process every few milliseconds. If that
-stands still for too long, it ends the process, so that the system takes back the
-device, and tells the wheel itself to let go, because not every device does so when its
-owner dies.
+stands still, it tells the wheel itself to let go, because not every device does so
+when its owner dies; a process that goes on afterwards finds its trial paused. One that
+stands still for longer is ended, so that the system takes back the device.
 """
 
 from __future__ import annotations
@@ -21,6 +21,12 @@ from costeer.runtime.wheels.registry import emergency_stop, prepare_stop
 
 PATIENCE = 0.08
 """A heartbeat older than this is none [s]: acting takes the rest of 100 ms."""
+
+END_PATIENCE = 1.0
+"""A process that stands still for so long with a wheel is ended [s]."""
+
+END_PATIENCE_WITHOUT = 5.0
+"""The same without a wheel: nobody is pushed, and a busy computer is no fault [s]."""
 
 INTERVAL = 0.005
 """Between two looks [s]."""
@@ -43,10 +49,11 @@ class Watched(NamedTuple):
     wheel: WheelDescription | None
 
 
-def stands_still(mailbox: Mailbox, now: float) -> bool:
-    """Whether the real-time process should be alive and is not."""
-    armed = mailbox.get("armed") > 0.5
-    return armed and now - mailbox.get("heartbeat") > PATIENCE
+def silence(mailbox: Mailbox, now: float) -> float:
+    """How long the process has stood still although it should be alive [s]."""
+    if mailbox.get("armed") < 0.5:
+        return 0.0
+    return now - mailbox.get("heartbeat")
 
 
 def run_watchdog(watched: Watched) -> None:
@@ -58,17 +65,47 @@ def run_watchdog(watched: Watched) -> None:
     shared = open_shared(watched.memory)
     mailbox = shared.mailbox
     mailbox.put(watching=1.0)
+    watch = Watch(watched, mailbox)
     try:
         while not (
             orphaned(mailbox, time.perf_counter()) or mailbox.get("dismissed") > 0.5
         ):
-            if stands_still(mailbox, time.perf_counter()):
-                act(watched)
-                mailbox.put(stalled=1.0, armed=0.0)
+            if watch.look(time.perf_counter()):
                 return
             time.sleep(INTERVAL)
     finally:
         close_shared(shared, unlink=False)
+
+
+class Watch:
+    """What one look after the other sees and does.
+
+    Args:
+        watched: What is looked after.
+        mailbox: With the heartbeat.
+    """
+
+    def __init__(self, watched: Watched, mailbox: Mailbox) -> None:
+        self._watched = watched
+        self._mailbox = mailbox
+        self._has_acted = False
+        there = watched.wheel is not None
+        self._end_patience = END_PATIENCE if there else END_PATIENCE_WITHOUT
+
+    def look(self, now: float) -> bool:
+        """Act on what is seen at this time [s]; return whether all is over."""
+        still = silence(self._mailbox, now)
+        if still > self._end_patience:
+            end_process(self._watched)
+            self._mailbox.put(stalled=1.0, armed=0.0)
+            return True
+        if still <= PATIENCE:
+            self._has_acted = False
+        elif not self._has_acted and self._watched.wheel is not None:
+            self._mailbox.put(stalled=1.0)  # first, for a process that wakes up now
+            let_go(self._watched.wheel)
+            self._has_acted = True
+        return False
 
 
 def stay_until_needed_no_more() -> None:
@@ -84,15 +121,16 @@ def orphaned(mailbox: Mailbox, now: float) -> bool:
     return alone and mailbox.get("armed") < 0.5
 
 
-def act(watched: Watched) -> None:
+def let_go(wheel: WheelDescription) -> None:
+    """Take the torque off a wheel, as far as it can be reached."""
+    with suppress(OSError, ValueError, ModuleNotFoundError):
+        emergency_stop(wheel)
+
+
+def end_process(watched: Watched) -> None:
     """End the process that stands still and take the torque off the wheel."""
-    if watched.wheel is not None:
-        # First of all, without waiting for the system to take the process down.
-        with suppress(OSError, ValueError, ModuleNotFoundError):
-            emergency_stop(watched.wheel)
     kill = getattr(signal, "SIGKILL", signal.SIGTERM)
     with suppress(OSError):
         os.kill(watched.process, kill)
     if watched.wheel is not None:
-        with suppress(OSError, ValueError, ModuleNotFoundError):
-            emergency_stop(watched.wheel)
+        let_go(watched.wheel)

@@ -6,6 +6,7 @@ import statistics
 import time
 from collections import deque
 from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
 from typing import NamedTuple
 
@@ -16,8 +17,8 @@ from costeer.base.packing import packed
 from costeer.methods.registry import METHODS, method_named
 from costeer.plant.parameters import wheelbase
 from costeer.runtime.drive import Drive, Listener
-from costeer.runtime.driving import PAGE_PATIENCE
 from costeer.runtime.frame import FRAME_COLUMNS, PLACE
+from costeer.runtime.patience import PAGE_PATIENCE
 from costeer.runtime.setup import PLANT_DT, DriveSetup, drive_parameters
 from costeer.runtime.stream import Marker
 from costeer.runtime.tunables import TUNABLES, checked_value, place_of, tunable_named
@@ -228,9 +229,13 @@ class DriveOnPages:
         self._num_drivers += 1
 
     def client_left(self, role: Role) -> None:
-        """Forget a page; a drive without one pauses by itself."""
-        if role == "driver":
-            self._num_drivers -= 1
+        """Forget a page; without one that drives the trial pauses."""
+        if role != "driver":
+            return
+        self._num_drivers -= 1
+        if self._num_drivers == 0:
+            with suppress(ValueError):  # the drive has ended
+                self.drive.send("leave")
 
     def account(self) -> list[str]:
         """How late everything was, in words."""

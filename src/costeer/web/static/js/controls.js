@@ -30,6 +30,11 @@ export class Controls {
    * @returns {boolean} whether it is one of the driving keys
    */
   key(code, down) {
+    // While Cmd is held, macOS tells no other key's release: none is held after it.
+    if (!down && /^(Meta|OS)(Left|Right)$/.test(code)) {
+      this.pressed.clear();
+      return true;
+    }
     if (!(code in STEERING) && !(code in PEDALS)) return false;
     if (down) this.pressed.add(code);
     else this.pressed.delete(code);

@@ -12,7 +12,7 @@ const FAULTS = [
   "", "The wheel was lost. Plug it in again.", "The page did not answer for a moment.",
   "The wheel says nothing new. Check its cable.",
   "A number was not finite. The trial must be restarted.",
-  "The real-time process stood still. Start costeer drive again.",
+  "The computer was too busy for a moment; costeer doctor says how to mend it.",
 ];
 
 /** Keys of driving and of replay, for the help. */
