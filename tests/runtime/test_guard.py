@@ -94,3 +94,13 @@ def test_after_a_fault_the_torque_fades_in_anew() -> None:
     assert state.fade == pytest.approx(DT / PARAMETERS.fade_in)
     # From what is left of the torque towards a thousandth of what is wanted.
     assert 0.0 < torque < 6.0
+
+
+def test_torque_that_is_asked_to_turn_round_does_so_at_its_rate() -> None:
+    state, torques = held(6.0), [6.0]
+    for _ in range(100):
+        state, torque = step(PARAMETERS, state, -6.0, True, False, DT)
+        torques.append(torque)
+    steps = [before - after for before, after in itertools.pairwise(torques)]
+    assert max(steps) == pytest.approx(PARAMETERS.torque_rate_limit * DT)
+    assert torques[-1] == -6.0
