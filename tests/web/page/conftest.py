@@ -2,28 +2,18 @@
 
 from __future__ import annotations
 
-import shutil
 import time
 from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from tests.web.page.stub import STATIC
+from costeer.bench.drive import CHROMIUM
+from tests.web.browser import chromium as chromium_path
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page
 
-FLAGS = [
-    "--no-sandbox",
-    "--use-angle=swiftshader",
-    "--enable-unsafe-swiftshader",
-    "--disable-background-networking",
-    "--disable-component-update",
-    "--disable-sync",
-    "--disable-quic",
-    "--no-first-run",
-]
 PATIENCE = 60.0
 """Longest wait for the page [s]: others may use the machine at the same time."""
 
@@ -32,13 +22,11 @@ PATIENCE = 60.0
 def browser() -> Iterator[Browser]:
     """One Chromium for a module; skips where browser or libraries are missing."""
     api = pytest.importorskip("playwright.sync_api")
-    program = shutil.which("chromium") or shutil.which("google-chrome")
-    if program is None:
-        pytest.skip("no Chromium here")
-    if not (STATIC / "vendor" / "stamp.txt").is_file():
-        pytest.skip("the page's libraries are missing: make page")
+    program = chromium_path()
     with api.sync_playwright() as playwright:
-        chromium = playwright.chromium.launch(executable_path=program, args=FLAGS)
+        chromium = playwright.chromium.launch(
+            executable_path=program, args=list(CHROMIUM)
+        )
         yield chromium
         chromium.close()
 
