@@ -59,6 +59,23 @@ def test_drive_waits_runs_pauses_and_goes_on_where_it_was(rig: MakeRig) -> None:
     assert drive.kinds() == ["started", "paused", "resumed"]
 
 
+def test_trace_of_the_wheel_has_every_plant_step_at_its_time(rig: MakeRig) -> None:
+    drive = rig(wheel_setup(hands=HANDS))
+    drive.ask("start")
+    drive.steps(3)
+    drive.ask("pause", "")
+    drive.steps(2)
+    drive.ask("resume")
+    drive.steps(1)
+    rows = drive.shared.trace.since(0)[1]
+    np.testing.assert_allclose(rows[:, 0], np.arange(4 * 16) / 960.0, atol=1e-9)
+    drive.ask("restart")
+    drive.ask("start")
+    drive.steps(1)
+    again = drive.shared.trace.since(64)[1]
+    np.testing.assert_allclose(again[:, 0], np.arange(16) / 960.0, atol=1e-9)
+
+
 def test_held_key_changes_the_lane_and_the_car_keeps_its_speed(rig: MakeRig) -> None:
     drive = rig(drive_setup("manual"))
     drive.ask("start")

@@ -30,7 +30,6 @@ from costeer.runtime.frame import (
     RUNNING,
     SENSOR_STALE,
     STALLED,
-    TRACE_COLUMNS,
     WAITING,
     WHEEL_LOST,
 )
@@ -46,23 +45,28 @@ from costeer.runtime.patience import (
 )
 from costeer.runtime.setup import DriveSetup, drive_parameters, leader_draws
 from costeer.runtime.shared import Shared
+from costeer.runtime.trace import Tracer
 from costeer.runtime.tunables import TUNABLES
 from costeer.runtime.wheels.calibration import WheelCalibration
 from costeer.runtime.wheels.interface import (
     Wheel,
     WheelDescription,
     WheelLost,
-    WheelReading,
 )
 from costeer.runtime.wheels.registry import open_wheel
 
 NEVER = math.inf
 
-_LANE = ROW_COLUMNS.index("lane")
-_POSITION = ROW_COLUMNS.index("longitudinal_position")
-_TIME = ROW_COLUMNS.index("time")
-_ANGLE = ROW_COLUMNS.index("steering_wheel_angle")
-_APPEARED = ROW_COLUMNS.index("event")
+_LANE, _POSITION, _TIME, _ANGLE, _APPEARED = (
+    ROW_COLUMNS.index(name)
+    for name in (
+        "lane",
+        "longitudinal_position",
+        "time",
+        "steering_wheel_angle",
+        "event",
+    )
+)
 
 
 class Driving:
@@ -93,12 +97,11 @@ class Driving:
         self._clock = clock
         self._opener = opener
         self._mailbox, self._frames = shared.mailbox, shared.frames
-        self._trace = shared.trace
+        self._tracer = Tracer(shared.trace)
         self._cabin = Cabin(setup)
         self._road = drive_parameters(setup).road
         self._draws = leader_draws(setup)
         self._frame = np.full(len(FRAME_COLUMNS), np.nan)
-        self._traced = np.zeros(len(TRACE_COLUMNS))
         self._choices = Choices(self._cabin, setup, self._mark)
         self._indicator = Indicator(self._mark)
         self.stopping = False
@@ -261,7 +264,7 @@ class Driving:
         if moving and reading is not None and now - reading.time > WHEEL_PATIENCE:
             self._break_off(SENSOR_STALE)
         if moving:
-            self._put_trace(late, now - start)
+            self._tracer.put(self._frame[_TIME], late, now - start, self._cabin)
 
     def _lose_wheel(self) -> None:
         """Let go of a wheel that is gone; that may take longer than is watched."""
@@ -269,19 +272,6 @@ class Driving:
         self._let_go()
         self._cabin.change_wheel(None)
         self._mailbox.put(heartbeat=self._clock(), armed=1.0)
-
-    def _put_trace(self, late: float, took: float) -> None:
-        """The wheel at the plant's rate, for the record."""
-        cabin, traced = self._cabin, self._traced
-        reading: WheelReading | None = cabin.reading
-        traced[0] = self._frame[_TIME]
-        traced[1] = late
-        traced[2] = cabin.steering_wheel_angle
-        traced[3] = math.nan if reading is None else reading.steering_wheel_rate
-        traced[4] = cabin.wheel_torque
-        traced[5] = math.nan if reading is None else cabin.driver_torque
-        traced[6] = took
-        self._trace.put(traced)
 
     # Safety
 

@@ -51,8 +51,8 @@ TRACE_COLUMNS = (
     "driver_torque",
     "step_time",
 )
-"""Of the wheel at the plant's rate. `time` is that of the control step, `lateness` how
-late the plant step began, `step_time` how long it took, the device's answers included.
+"""Of the wheel at the plant's rate: `time` of the trial at the start of the plant
+step, `lateness` how late it began, `step_time` how long it took, the device included.
 """
 
 TRACE_UNITS = ("s", "s", "rad", "rad/s", "N·m", "N·m", "s")
