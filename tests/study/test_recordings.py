@@ -140,3 +140,15 @@ def test_an_infinite_sample_is_an_undefined_one() -> None:
     held = stretch.columns["yaw_angle"]
     assert np.isnan(held[TIME == 2.0]).all()
     assert np.isfinite(held[TIME != 2.0]).all()
+
+
+def test_what_a_record_leaves_empty_stays_empty() -> None:
+    # Of a person nobody knows the intention; a zero would say that there was none.
+    nobody_knows = np.ma.MaskedArray(np.zeros(100, np.int8), mask=True)
+    some = np.ma.MaskedArray(np.ones(100, np.int8), mask=TIME > 2.0)
+    columns = table(driver_intention=nobody_knows, target_lane=some)
+    (stretch,) = stretches(columns, Adaptation())
+    assert np.ma.getmaskarray(stretch.columns["driver_intention"]).all()
+    np.testing.assert_array_equal(
+        np.ma.getmaskarray(stretch.columns["target_lane"]), TIME > 2.0
+    )

@@ -144,8 +144,9 @@ def _as_kind(name: str, values: NDArray[Any]) -> NDArray[Any]:
 
 
 def _whole(name: str, values: NDArray[Any], dtype: type[np.generic]) -> NDArray[Any]:
-    undefined = np.isnan(values)
-    plain = np.where(undefined, 0, values)
+    data = np.ma.getdata(values)
+    undefined = np.ma.getmaskarray(values) | np.isnan(data)
+    plain = np.where(undefined, 0, data)
     whole: NDArray[Any] = plain.astype(dtype)
     if (whole != plain).any():
         row = int(np.flatnonzero(whole != plain)[0])
