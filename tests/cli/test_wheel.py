@@ -15,7 +15,7 @@ from costeer.cli.group import load_command
 from costeer.runtime import clock
 from costeer.runtime.wheels import excitation, registry, selftest
 from costeer.runtime.wheels.calibration import WheelCalibration, uncalibrated
-from costeer.runtime.wheels.interface import WheelDescription
+from costeer.runtime.wheels.interface import WheelDescription, WheelReading
 from costeer.runtime.wheels.pedals import NO_PEDAL, PedalAxis, pressed_axis
 from costeer.runtime.wheels.simulated import SimulatedWheel, SimulatedWheelParameters
 from costeer.runtime.wheels.store import load_calibration, save_calibration
@@ -41,6 +41,7 @@ class PedalWheel(SimulatedWheel):
         super().__init__(DEVICE, calibration, user)
         self._user = user
         self._asked = 0
+        self.is_awake = True
 
     def axes(self) -> tuple[float, ...]:
         """Steering, clutch, accelerator and brake; a pressed one falls to -1."""
@@ -118,6 +119,61 @@ def test_a_user_calibrates_a_wheel_with_pedals(
     order = ["turn by itself", "accelerator", "brake", "to the left", "to the right"]
     places = [asked.index(words) for words in order]
     assert places == sorted(places)
+
+
+class SleepingWheel(PedalWheel):
+    """A wheel that is awake once its user has been asked to turn it."""
+
+    def __init__(self, calibration: WheelCalibration, user: User) -> None:
+        super().__init__(calibration, user)
+        self.is_awake = False
+
+    def read(self) -> WheelReading:
+        """A reading, which wakes the wheel if it was turned."""
+        self.is_awake = self.is_awake or "by 10 degrees" in self._user.heard[-1]
+        return super().read()
+
+
+def test_a_wheel_that_is_asleep_is_turned_first(
+    user: User, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(registry, "open_wheel", lambda _, raw: SleepingWheel(raw, user))
+    assert run("calibrate", "--no-pedals") == 0
+    asked = [text for text in user.heard if "Turn the wheel" in text]
+    assert asked[0] == "Turn the wheel by 10 degrees and back."
+    assert "to the left" in asked[1]
+    user.heard = [""]
+    monkeypatch.setattr("sys.stdin", io.StringIO("\n"))
+    assert run("test") == 0
+    assert user.heard[-2:] == [asked[0], "Take your hands off the wheel."]
+
+
+@pytest.mark.parametrize("action", ["calibrate", "test"])
+def test_a_wheel_that_nobody_wakes_is_not_pushed(
+    action: str,
+    user: User,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    def opened(known: WheelDescription, calibration: WheelCalibration) -> PedalWheel:
+        wheel = PedalWheel(calibration, user)
+        wheel.is_awake = False
+        return wheel
+
+    save_calibration(uncalibrated(G29.identity))
+    monkeypatch.setattr(registry, "open_wheel", opened)
+    monkeypatch.setattr(wheel_session, "WAKE_TIME", 0.05)
+    assert run(action) == 2
+    assert "nobody turned the wheel within" in capsys.readouterr().err
+    assert not any("hands" in text for text in user.heard)
+
+
+def test_without_turns_a_wheel_is_not_mirrored(user: User) -> None:
+    # Its axis grows to the right and a positive command pushes to the right.
+    assert (DEVICE.angle_sign, DEVICE.torque_sign) == (-1.0, -1.0)
+    assert run("calibrate", "--no-turns", "--no-pedals") == 0
+    found = load_calibration(G29)
+    assert (found.angle_sign, found.torque_sign) == (-1.0, -1.0)
 
 
 def test_a_weight_on_a_wheel_that_is_not_in_the_table(user: User) -> None:

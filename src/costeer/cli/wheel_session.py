@@ -25,6 +25,10 @@ Result = TypeVar("Result")
 PEDAL_TIME = 4.0
 """In which a pedal must be pressed [s]."""
 
+WAKE_TIME = 30.0
+"""In which a wheel must be turned that is not awake [s]."""
+
+_WAKE = "Turn the wheel by 10 degrees and back."
 _WARNING = (
     "The wheel will turn by itself for about {seconds:.0f} seconds, by half a turn at "
     "most. Take ties and sleeves away and keep the power switch in reach."
@@ -171,6 +175,7 @@ def calibrate(chosen: Chosen, reference: Reference, pedals: bool) -> None:
     _warn(chosen, pushes.duration)
     raw = _uncalibrated(chosen)
     with closing(_opened(chosen, raw)) as wheel:
+        _wake(wheel)
         raw = _with_pedals(wheel, raw) if pedals and not chosen.simulated else raw
         dt = 1.0 / selftest.reading_rate(wheel)
         result = _run(chosen, wheel, selftest.calibrate(raw, reference, dt, pushes))
@@ -196,6 +201,7 @@ def check(chosen: Chosen) -> None:
     pushes = selftest.TEST_PUSHES
     _warn(chosen, pushes.duration)
     with closing(_opened(chosen, selftest.opened_for_test(stored))) as wheel:
+        _wake(wheel)
         dt = 1.0 / selftest.reading_rate(wheel)
         found = _run(chosen, wheel, selftest.compare(stored, dt, pushes))
     wrong = [each.name for each in found if not selftest.agrees(each)]
@@ -228,14 +234,10 @@ def _warn(chosen: Chosen, seconds: float) -> None:
 
 def _uncalibrated(chosen: Chosen) -> WheelCalibration:
     from costeer.runtime.wheels.calibration import uncalibrated
-    from costeer.runtime.wheels.simulated import SimulatedWheelParameters
+    from costeer.runtime.wheels.references import known_angle_sign
 
-    if not chosen.simulated:
-        return uncalibrated(chosen.description.identity)
-    device = SimulatedWheelParameters()
-    return uncalibrated(
-        chosen.description.identity, device.full_range, device.angle_sign
-    )
+    kind, identity = chosen.description.kind, chosen.description.identity
+    return uncalibrated(identity, angle_sign=known_angle_sign(kind))
 
 
 def _opened(chosen: Chosen, calibration: WheelCalibration) -> Wheel:
@@ -259,6 +261,27 @@ def _run(chosen: Chosen, wheel: Wheel, procedure: Procedure[Result]) -> Result:
 def _no_wait() -> float:
     """A simulated wheel is ready at once."""
     return 0.0
+
+
+def _wake(wheel: Wheel) -> None:
+    """Let the user turn a wheel that does not show its angle before.
+
+    Raises:
+        ValueError: If nobody does.
+    """
+    end = time.monotonic() + WAKE_TIME
+    asked = False
+    while not getattr(wheel, "is_awake", True):
+        if not asked:
+            note(_WAKE)
+            asked = True
+        if time.monotonic() > end:
+            raise ValueError(
+                f"nobody turned the wheel within {WAKE_TIME:.0f} s, and before that "
+                "its angle is not known; run it again, and turn it when asked"
+            )
+        wheel.read()
+        time.sleep(0.01)
 
 
 def _with_pedals(wheel: Wheel, raw: WheelCalibration) -> WheelCalibration:

@@ -4,6 +4,8 @@
  * FAKE_WHEEL_NODE  the FIFO, shown as /dev/input/event0; input events that are
  *                  written into it move the wheel
  * FAKE_WHEEL_LOG   every effect, every start or stop, every erasure, one a line
+ * FAKE_WHEEL_AT    a file with the steering's value when the device is opened, if it is
+ *                  not in the middle
  * FAKE_WHEEL_GONE  once this file exists, reads and effects fail as if unplugged
  */
 #define _GNU_SOURCE
@@ -34,6 +36,16 @@ static int is_wheel(int fd) {
 static int is_gone(void) {
     const char *path = getenv("FAKE_WHEEL_GONE");
     return path && access(path, F_OK) == 0;
+}
+
+static int stands_at(void) {
+    const char *path = getenv("FAKE_WHEEL_AT");
+    FILE *file = path ? fopen(path, "r") : NULL;
+    int value = 32768;
+    if (!file) return value;
+    if (fscanf(file, "%d", &value) != 1) value = 32768;
+    fclose(file);
+    return value;
 }
 
 static void note(const char *format, ...) {
@@ -96,7 +108,7 @@ static int answer(unsigned int number, size_t size, void *out) {
         capabilities(number - 0x20, out, size);
     } else if (number >= 0x40 && number < 0x80) {
         int steering = number == 0x40 + ABS_X;
-        struct input_absinfo axis = {steering ? 32768 : 255, 0,
+        struct input_absinfo axis = {steering ? stands_at() : 255, 0,
                                      steering ? 65535 : 255, 0, 0, 0};
         memcpy(out, &axis, sizeof axis);
     } else if (number == _IOC_NR(EVIOCSFF)) {

@@ -78,6 +78,7 @@ def played(module: str, scenarios: tuple[str, ...], folder: Path) -> dict[str, S
         "SDL_JOYSTICK_DEVICE": "/dev/input/event0",
         "FAKE_WHEEL_NODE": str(node),
         "FAKE_WHEEL_LOG": str(log),
+        "FAKE_WHEEL_AT": str(folder / "at"),
         "FAKE_WHEEL_GONE": str(folder / "gone"),
     }
     if coverage.Coverage.current() is not None:
@@ -126,6 +127,11 @@ def moved(kind: int, number: int, value: int) -> None:
     report = EVENT.pack(0, 0, kind, number, value) + EVENT.pack(0, 0, 0, 0, 0)
     with Path(os.environ["FAKE_WHEEL_NODE"]).open("wb", buffering=0) as node:
         node.write(report)
+
+
+def stands_at(value: int) -> None:
+    """Have the kernel say that the steering is at a value when it is opened next."""
+    Path(os.environ["FAKE_WHEEL_AT"]).write_text(str(value))
 
 
 def unplugged() -> None:

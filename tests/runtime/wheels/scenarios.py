@@ -70,6 +70,22 @@ def moves() -> object:
     return [list(reading[1:]) for reading in read], axes, read[-1].time
 
 
+def wakes() -> object:
+    """The rim is turned a little, then enough, then back: awake, angle, each time."""
+    wheel = the_wheel()
+    told = [(wheel.is_awake, wheel.read().steering_wheel_angle, wheel.is_awake)]
+    for offset in (100, 400, -400, 420, 0):
+        fake.moved(fake.AXIS, fake.STEERING, 32768 + offset)
+        told.append((wheel.is_awake, wheel.read().steering_wheel_angle, wheel.is_awake))
+    wheel.close()
+    fake.stands_at(40000)
+    again = the_wheel()
+    fake.stands_at(32768)
+    told.append((again.is_awake, again.read().steering_wheel_angle, again.is_awake))
+    again.close()
+    return told
+
+
 def opens_another() -> object:
     """A wheel is asked for that is not there."""
     (description,) = sdl_wheels()
@@ -89,16 +105,17 @@ def stops() -> object:
 
 
 def hurries() -> object:
-    """Median and 99th percentile of a reading and a torque [s]."""
+    """Of a reading and a torque: median, and 99th percentile of the work [s]."""
     wheel = the_wheel()
-    took = []
+    took, worked = [], []
     for step in range(2000):
-        start = time.perf_counter()
+        start, used = time.perf_counter(), time.thread_time()
         wheel.read()
         wheel.write(math.sin(step))
         took.append(time.perf_counter() - start)
+        worked.append(time.thread_time() - used)
     wheel.close()
-    return sorted(took)[1000], sorted(took)[1980]
+    return sorted(took)[1000], sorted(worked)[1980]
 
 
 def loses() -> object:

@@ -19,7 +19,13 @@ from costeer.runtime.wheels.excitation import (
     SelfTestStopped,
 )
 from costeer.runtime.wheels.interface import WheelLost
-from costeer.runtime.wheels.references import BACK, LEFT, RIGHT, Weight
+from costeer.runtime.wheels.references import (
+    BACK,
+    LEFT,
+    RIGHT,
+    Weight,
+    known_angle_sign,
+)
 from costeer.runtime.wheels.selftest import (
     Reference,
     SelfTestResult,
@@ -36,6 +42,7 @@ from costeer.runtime.wheels.simulated import (
     no_hands,
     true_calibration,
 )
+from costeer.runtime.wheels.weighing import HANG
 from tests.runtime.wheels.user import User
 
 DT = 1.0 / 960.0
@@ -139,6 +146,11 @@ def test_the_turns_give_the_side_and_the_range(angle_sign: float) -> None:
     assert found.damping == pytest.approx(device.damping, abs=0.02)
 
 
+def test_only_a_senso_wheels_axis_grows_to_the_left() -> None:
+    sides = [known_angle_sign(kind) for kind in ("sdl", "hid", "simulated", "senso")]
+    assert sides == [-1.0, -1.0, -1.0, 1.0]
+
+
 @pytest.mark.parametrize("side", [-1.0, 1.0])
 def test_a_weight_gives_the_scale(side: float) -> None:
     device = SimulatedWheelParameters(friction=0.2)
@@ -148,6 +160,18 @@ def test_a_weight_gives_the_scale(side: float) -> None:
     # Friction cancels over whole swings but for the swing's ends, where it sticks.
     assert found.calibration.torque_curve[-1][1] == pytest.approx(2.2, rel=0.03)
     assert found.calibration.friction == pytest.approx(0.2, rel=0.06)
+
+
+def test_a_wheel_is_brought_to_its_middle_before_the_weight() -> None:
+    # So light and free that the pushes leave it far away.
+    device = SimulatedWheelParameters(friction=0.03, damping=0.01)
+    user = User(device, pull=0.5 * 9.81 * 0.14)
+    reference = Reference(weight=Weight(mass=0.5, radius=0.14), turns=False)
+    found = calibrated(device, reference, hands=user).calibration
+    before = user.heard[1 : user.heard.index(HANG)]
+    assert before[:2] == [HANDS_OFF, BACK]
+    assert before[-1] == HANDS_OFF
+    assert found.torque_curve[-1][1] == pytest.approx(2.2, rel=0.03)
 
 
 @pytest.mark.parametrize(
@@ -175,13 +199,54 @@ class Stuck(User):
 
 
 @pytest.mark.parametrize(
-    ("since", "told"), [(0.0, "does not move at full command"), (6.0, "is held")]
+    ("since", "told"), [(0.0, "does not move at 60% of its command"), (6.0, "is held")]
 )
 def test_hands_on_the_wheel_stop_the_test(since: float, told: str) -> None:
     device = SimulatedWheelParameters(torque_curve=((0.0, 0.0), (1.0, 0.4)))
     hands = Stuck(device, since)
     with pytest.raises(SelfTestStopped, match=told):
         calibrated(device, Reference(peak_torque=0.4, turns=False), hands=hands)
+
+
+class Held(User):
+    """Hands that hold the wheel and feel how strongly it pushes."""
+
+    def __init__(self, device: SimulatedWheelParameters) -> None:
+        super().__init__(device)
+        self.felt = 0.0
+
+    def __call__(self, time: float, angle: float, rate: float) -> float:
+        """Torque of the hands [N·m]."""
+        held = -400.0 * angle - 8.0 * rate
+        self.felt = max(self.felt, abs(held))
+        return held
+
+
+STRONG = SimulatedWheelParameters(torque_curve=((0.0, 0.0), (1.0, 25.0)), damping=0.5)
+
+
+def test_a_strong_wheel_that_is_held_gets_two_newton_metres() -> None:
+    hands = Held(STRONG)
+    with pytest.raises(SelfTestStopped, match="at 8% of its command: let it go"):
+        calibrated(STRONG, Reference(peak_torque=25.0, turns=False), hands=hands)
+    # Less its friction of 0.1 N·m.
+    assert hands.felt == pytest.approx(1.9, abs=0.1)
+
+
+def test_a_strong_wheel_that_is_held_gets_no_more_in_its_test() -> None:
+    hands, stored = Held(STRONG), true_calibration(STRONG)
+    wheel = SimulatedWheel(STRONG, opened_for_test(stored), hands)
+    with pytest.raises(SelfTestStopped, match="at 8% of its command"):
+        run_procedure(wheel, compare(stored, DT), lambda: None, lambda text: None)
+    assert hands.felt == pytest.approx(1.9, abs=0.1)
+
+
+def test_a_wheel_of_the_table_is_pushed_as_gently_with_a_weight() -> None:
+    senso = STRONG._replace(torque_curve=((0.0, 0.0), (1.0, 8.0)))
+    opened = uncalibrated("senso-7", senso.full_range, senso.angle_sign)
+    reference = Reference(weight=Weight(1.0, 0.14), turns=False)
+    with pytest.raises(SelfTestStopped, match="at 25% of its command"):
+        calibrated(senso, reference, opened, Held(senso))
 
 
 class Shaking(User):
@@ -232,6 +297,19 @@ def test_a_harsh_device_is_never_pushed_with_all_it_has() -> None:
     # Its curve is straight, so the share of the peak is right.
     assert highest[1] == pytest.approx(25.0 * highest[0], rel=0.01)
     assert "never sent" in found.notes[0]
+
+
+def test_a_wheel_that_saturates_has_its_peak_where_it_saturates() -> None:
+    full_from_half = ((0.0, 0.0), (0.5, 2.2), (1.0, 2.2))
+    device = SimulatedWheelParameters(torque_curve=full_from_half)
+    found = calibrated(device, Reference(peak_torque=2.2, turns=False))
+    highest = found.calibration.torque_curve[-1]
+    assert highest[0] < 1.0
+    assert highest[1] == pytest.approx(2.2, rel=0.01)
+    # As a device with a straight curve.
+    assert found.calibration.inertia == pytest.approx(device.inertia, rel=0.015)
+    assert f"above {highest[0]:g} add nothing" in found.notes[0]
+    assert not any("share of the peak" in words for words in found.notes)
 
 
 def test_a_wheel_that_is_lost_is_told_as_lost() -> None:

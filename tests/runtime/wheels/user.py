@@ -4,8 +4,12 @@ from __future__ import annotations
 
 import math
 
-from costeer.runtime.wheels.references import BACK, HANG, LEFT, RIGHT, WAIT
+from costeer.runtime.wheels.references import BACK, LEFT, RIGHT
 from costeer.runtime.wheels.simulated import SimulatedWheelParameters
+from costeer.runtime.wheels.weighing import HANG, TAKE_OFF, WAIT
+
+TAKES = 3.0
+"""After which the weight is off, once it is asked for [s]."""
 
 
 class User:
@@ -28,11 +32,16 @@ class User:
         if math.isnan(self._since):
             self._since = time
         text = self.heard[-1]
-        torque = self._pull if text in (HANG, WAIT) else 0.0
+        torque = self._weight(text, time - self._since)
         if text in self._wanted:
             grip = 6.0 * (self._wanted[text] - angle) - 1.5 * rate
             torque += self._hold(text, time - self._since) * grip
         return torque
+
+    def _weight(self, text: str, elapsed: float) -> float:
+        """Torque of the weight [N·m]."""
+        hangs = text in (HANG, WAIT) or (text == TAKE_OFF and elapsed < TAKES)
+        return self._pull if hangs else 0.0
 
     def _hold(self, text: str, elapsed: float) -> float:
         """How much of the grip is left: a weight is let go between 1 and 4 s [-]."""

@@ -47,6 +47,8 @@ class ExcitationParameters(NamedTuple):
         longest_push: Of one level [s]. Source: assumed.
         first_movement: Angle that is a movement and no noise [rad]. Source: assumed,
             0.6 deg, twice the step of a 10-bit axis.
+        largest_breakaway: Command that must move the wheel, else it is held [-].
+            Source: assumed, friction of a consumer wheel takes up to a third.
         ramp: Growth of the command that looks for it [1/s]. Source: assumed, so slow
             that latency adds 1 % of the command.
         patience: Wheel without movement for this long is held [s]. Source: assumed.
@@ -61,6 +63,7 @@ class ExcitationParameters(NamedTuple):
     shortest_push: float = 0.03
     longest_push: float = 0.11
     first_movement: float = 0.0105
+    largest_breakaway: float = 0.6
     ramp: float = 0.25
     patience: float = 2.0
 
@@ -146,12 +149,12 @@ def find_breakaway(
         sign: Of the command.
 
     Raises:
-        SelfTestStopped: If it does not move at full command.
+        SelfTestStopped: If the largest command allowed does not move it.
     """
     angle = yield from stay_still(0.3)
     reading = yield Instruction(0.0, HANDS_OFF)
     start, command = reading.time, 0.0
-    while command < 1.0:
+    while command < parameters.largest_breakaway:
         reading = yield Instruction(sign * command, HANDS_OFF)
         moved = reading.steering_wheel_angle - angle
         if abs(moved) > parameters.first_movement:
@@ -159,8 +162,9 @@ def find_breakaway(
             return Breakaway(sign * command, 1.0 if moved > 0.0 else -1.0)
         command = parameters.ramp * (reading.time - start)
     raise SelfTestStopped(
-        "the wheel does not move at full command: it is held, has no power, or its "
-        "driver gives no force"
+        f"the wheel does not move at {parameters.largest_breakaway:.0%} of its "
+        "command: let it go, switch its power on, set the force to full in its "
+        "maker's software, then run it again"
     )
 
 

@@ -42,6 +42,8 @@ class Mechanics(NamedTuple):
     Attributes:
         direction: +1 if a positive command makes the angle grow, else -1.
         curve: Commands and their shares of the largest torque; grows from (0, 0).
+        tried: Highest command that was pushed with; above the end of the curve if the
+            last levels add nothing.
         inertia: Over the largest torque [s²].
         damping: Over the largest torque [s].
         friction: Over the largest torque [-].
@@ -51,6 +53,7 @@ class Mechanics(NamedTuple):
 
     direction: float
     curve: tuple[tuple[float, float], ...]
+    tried: float
     inertia: float
     damping: float
     friction: float
@@ -102,6 +105,7 @@ def fit_mechanics(excitation: Excitation, dt: float) -> Mechanics:
     return Mechanics(
         direction=direction,
         curve=tuple((command, gain / largest) for command, gain in curve),
+        tried=signals.levels[-1],
         inertia=1.0 / largest,
         damping=max(float(slowing[0]) / largest, 0.0),
         friction=max(float(slowing[1]) / largest, 0.0),

@@ -1,7 +1,8 @@
 """What gives a wheel its scale: turns from lock to lock, and a known torque.
 
-Everything else that the self-test finds is a ratio. The procedures are generators as
-in wheels/excitation.py, on a wheel that is open without calibration.
+Everything else that the self-test finds is a ratio; a weight is weighed in
+wheels/weighing.py. The procedures are generators as in wheels/excitation.py, on a wheel
+that is open without calibration.
 """
 
 from __future__ import annotations
@@ -11,7 +12,6 @@ from collections.abc import Generator
 from typing import NamedTuple
 
 from costeer.plant.parameters import GRAVITY
-from costeer.runtime.wheels.calibration import WheelCalibration, device_command
 from costeer.runtime.wheels.excitation import (
     HANDS_OFF,
     Instruction,
@@ -19,7 +19,6 @@ from costeer.runtime.wheels.excitation import (
 )
 from costeer.runtime.wheels.hid import IDENTITY_END
 from costeer.runtime.wheels.interface import WheelReading
-from costeer.runtime.wheels.mechanics import Mechanics
 from costeer.runtime.wheels.senso_frames import FULL_TORQUE
 
 PEAK_TORQUES = {
@@ -41,8 +40,6 @@ SENSO_PREFIX = "senso-"
 LEFT = "Turn the wheel to the left until it stops, and hold it there."
 RIGHT = "Now turn it to the right until it stops, and hold it there."
 BACK = "Turn it back to the middle and let go."
-HANG = "Hang the weight on the rim so that it pulls; hold the wheel, let go slowly."
-WAIT = "Hands off; the wheel carries the weight."
 
 _STOPPED = 0.7
 _STEADY = math.radians(1.5)
@@ -57,10 +54,12 @@ class Turns(NamedTuple):
     Attributes:
         angle_sign: +1 if the angle grew to the left, else -1.
         span: Between the two ends, as the open wheel tells it [rad].
+        middle: Between them, likewise [rad].
     """
 
     angle_sign: float
     span: float
+    middle: float = 0.0
 
 
 class Weight(NamedTuple):
@@ -75,35 +74,23 @@ class Weight(NamedTuple):
     radius: float
 
 
-class WeighingParameters(NamedTuple):
-    """How the motor carries a weight.
-
-    Attributes:
-        bandwidth: Of the motor that holds the wheel [rad/s]. Source: assumed, stable
-            with 30 ms of latency and a weight as heavy as the rim.
-        hold_time: In which the motor takes over from the hands [s]. Source: assumed.
-        settle_time: Then it settles [s]. Source: assumed, several times the integral.
-        swing: Of the wheel while it is weighed, so that friction has both signs [rad].
-            Source: assumed, 5 deg; a cord around the rim keeps its lever.
-        period: Of the swing [s]. Source: assumed, slow.
-        num_periods: Over which the torque is averaged [-]. Source: assumed.
-        largest_error: The test stops here [rad]. Source: assumed.
-    """
-
-    bandwidth: float = 9.0
-    hold_time: float = 6.0
-    settle_time: float = 4.0
-    swing: float = 0.09
-    period: float = 4.0
-    num_periods: float = 2.0
-    largest_error: float = 1.2
-
-
 def known_peak_torque(identity: str) -> float | None:
     """Torque of a device at full command [N·m]; None if it is not in the table."""
     if identity.startswith(SENSO_PREFIX):
         return FULL_TORQUE
     return PEAK_TORQUES.get(identity.removesuffix(IDENTITY_END))
+
+
+def known_angle_sign(kind: str) -> float:
+    """Side of an axis before anybody turned the wheel: +1 if it grows to the left.
+
+    Axes grow to the right by evdev, by DirectInput and in Logitech's reports; a
+    SENSO-Wheel counts to the left.
+
+    Args:
+        kind: Of the wheel's description.
+    """
+    return 1.0 if kind == "senso" else -1.0
 
 
 def torque_of(weight: Weight) -> float:
@@ -130,8 +117,9 @@ def turn_both_ways() -> Generator[Instruction, WheelReading, Turns]:
     start = (yield Instruction(0.0, LEFT)).steering_wheel_angle
     left = yield from _end(LEFT, start, 0.0)
     right = yield from _end(RIGHT, left, start - left)
-    yield from come_to_the_middle((left + right) / 2.0, BACK)
-    return Turns(1.0 if left > right else -1.0, abs(left - right))
+    middle = (left + right) / 2.0
+    yield from come_to_the_middle(middle, BACK)
+    return Turns(1.0 if left > right else -1.0, abs(left - right), middle)
 
 
 def come_to_the_middle(
@@ -183,95 +171,3 @@ def _end(
                 "the wheel was not turned to its end; run it again, or leave the turns "
                 "out with --no-turns"
             )
-
-
-def weigh(
-    mechanics: Mechanics, parameters: WeighingParameters, dt: float
-) -> Generator[Instruction, WheelReading, float]:
-    """Let the motor carry a weight; return its torque over the largest one [-].
-
-    Args:
-        mechanics: Of the wheel, as the pushes showed it.
-        parameters: How it is carried.
-        dt: Between readings [s].
-
-    Raises:
-        SelfTestStopped: If the weight is too heavy or not there.
-    """
-    reading = yield Instruction(0.0, HANG)
-    centre, started = reading.steering_wheel_angle, reading.time
-    motor = _Carrier(mechanics, parameters, centre)
-    settled = parameters.hold_time + parameters.settle_time
-    end = settled + parameters.num_periods * parameters.period
-    total, count = 0.0, 0
-    while (elapsed := reading.time - started) < end:
-        command, torque = motor.carry(reading, elapsed, dt)
-        if elapsed >= settled:
-            total, count = total + torque, count + 1
-        text = HANG if elapsed < parameters.hold_time else WAIT
-        reading = yield Instruction(command, text)
-    yield Instruction(0.0, "Take the weight off.")
-    return _plausible(total / max(count, 1))
-
-
-def _plausible(share: float) -> float:
-    if abs(share) > 0.9:
-        raise SelfTestStopped(
-            "the weight is too heavy for the motor; take a lighter one"
-        )
-    if abs(share) < 0.05:
-        raise SelfTestStopped(
-            f"the weight takes {abs(share):.1%} of the motor's torque, too little to "
-            "be measured; take a heavier one, or see that it pulls at the rim"
-        )
-    return abs(share)
-
-
-class _Carrier:
-    """Holds the wheel at an angle, whatever pulls: proportional, integral, damping."""
-
-    def __init__(
-        self, mechanics: Mechanics, parameters: WeighingParameters, centre: float
-    ) -> None:
-        self._motor = WheelCalibration(
-            identity="weighing",
-            torque_curve=mechanics.curve,
-            torque_sign=mechanics.direction,
-        )
-        self._parameters = parameters
-        self._inertia = 2.0 * mechanics.inertia
-        self._centre = self._smooth = centre
-        self._integral = 0.0
-
-    def carry(
-        self, reading: WheelReading, elapsed: float, dt: float
-    ) -> tuple[float, float]:
-        """Command and torque now; more and more of it while the hands still hold."""
-        parameters = self._parameters
-        target = self._centre + self._swing(elapsed)
-        angle = reading.steering_wheel_angle
-        error = target - angle
-        if abs(error) > parameters.largest_error:
-            raise SelfTestStopped(
-                "the weight turns the wheel away; hang a lighter one, hold the wheel "
-                "and let go slowly"
-            )
-        bandwidth = parameters.bandwidth
-        self._smooth += (angle - self._smooth) * min(dt / 0.01, 1.0)
-        rate = (angle - self._smooth) / 0.01
-        stiffness = self._inertia * bandwidth**2
-        grown = min(elapsed / parameters.hold_time, 1.0)
-        self._integral += grown * stiffness * error * dt * bandwidth / 4.0
-        self._integral = min(max(self._integral, -1.0), 1.0)
-        damping = 2.0 * self._inertia * bandwidth
-        torque = stiffness * error + self._integral - damping * rate
-        torque = grown * min(max(torque, -1.0), 1.0)
-        return device_command(self._motor, torque), torque
-
-    def _swing(self, elapsed: float) -> float:
-        parameters = self._parameters
-        since = elapsed - parameters.hold_time - parameters.settle_time / 2.0
-        if since < 0.0:
-            return 0.0
-        phase = math.tau * since / parameters.period
-        return parameters.swing * math.sin(phase)

@@ -63,7 +63,8 @@ def _glide(rim: Rim, rate: float, pull: float, dt: float) -> tuple[float, float]
 
 def _time_to_stop(rim: Rim, rate: float, pull: float) -> float:
     """When the rate becomes zero [s]; infinite if never."""
-    if pull * rate >= 0.0:
+    # No product: that of two tiny values is zero.
+    if pull == 0.0 or (pull > 0.0) == (rate > 0.0):
         return math.inf
     if rim.damping == 0.0:
         return -rate * rim.inertia / pull

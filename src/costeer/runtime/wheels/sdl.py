@@ -92,7 +92,15 @@ def stop_sdl(description: WheelDescription) -> None:
 
 
 class SdlWheel:
-    """A wheel that SDL2 drives."""
+    """A wheel that SDL2 drives.
+
+    SDL2 shows an axis as it was when it was opened until it has moved by 1.25 % of its
+    half, 5.6 deg of 900; then the axis jumps to where it is.
+
+    Attributes:
+        is_awake: Whether the angle is shown as it is: False until a reading of the
+            steering differs from the one that SDL2 took when it was opened.
+    """
 
     measures_torque = False
     # A third of the loop's 960 Hz: an update takes one USB transfer of 1 to 2 ms.
@@ -115,6 +123,7 @@ class SdlWheel:
             WheelLost: If the device is not there or does not push.
         """
         self.torque_limit = largest_torque(calibration)
+        self.is_awake = False
         self._calibration = calibration
         self._name = description.name
         self._paddles = paddles
@@ -159,6 +168,7 @@ class SdlWheel:
         if not self._sdl.SDL_JoystickGetAttached(self._joystick):
             raise WheelLost(f"{self._name} was unplugged")
         axis = self._sdl.SDL_JoystickGetAxis
+        self.is_awake = self.is_awake or self._has_moved()
         return tuple(axis(self._joystick, n) / _AXIS_STEPS for n in self._axis_numbers)
 
     def write(self, torque: float) -> None:
@@ -205,6 +215,15 @@ class SdlWheel:
         except WheelLost:
             self.close()
             raise
+
+    def _has_moved(self) -> bool:
+        """Whether SDL2 shows another steering axis than the first that it was told."""
+        first = ctypes.c_int16()
+        known = self._sdl.SDL_JoystickGetAxisInitialState(
+            self._joystick, _STEERING_AXIS, ctypes.byref(first)
+        )
+        now = self._sdl.SDL_JoystickGetAxis(self._joystick, _STEERING_AXIS)
+        return bool(known) and now != first.value
 
     def _update(self, level: int) -> None:
         self._effect.constant.level = level

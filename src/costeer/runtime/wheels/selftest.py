@@ -14,6 +14,7 @@ from typing import NamedTuple, TypeVar
 from costeer.runtime.wheels.calibration import (
     WheelCalibration,
     checked,
+    device_command,
     device_torque,
     uncalibrated,
 )
@@ -29,19 +30,24 @@ from costeer.runtime.wheels.interface import Wheel, WheelLost, WheelReading
 from costeer.runtime.wheels.mechanics import Mechanics, fit_mechanics
 from costeer.runtime.wheels.references import (
     Turns,
-    WeighingParameters,
     Weight,
     come_to_the_middle,
+    known_peak_torque,
     torque_of,
     turn_both_ways,
-    weigh,
 )
+from costeer.runtime.wheels.weighing import WeighingParameters, weigh
+
+GENTLE_TORQUE = 2.0
+"""Most that a wheel gets which may be held, if its torque is known [N·m]."""
 
 LOOP_RATE = 960.0
 """Readings a second, if the wheel can be written as often [Hz]."""
 
 TEST_PUSHES = ExcitationParameters(duration=10.0)
 """Pushes of a test against a calibration: half as long as those of a calibration."""
+
+_WIDER = 1.1
 
 Result = TypeVar("Result")
 Procedure = Generator[Instruction, WheelReading, Result]
@@ -189,21 +195,31 @@ def calibrate(
         turns = yield from turn_both_ways()
     else:
         yield from come_to_the_middle(0.0)
-    breakaway = yield from find_direction(pushes)
+    full_range = _full_range(opened, turns, reference)
+    peak = reference.peak_torque or known_peak_torque(opened.identity)
+    gentle = 1.0 if peak is None else GENTLE_TORQUE / peak
+    breakaway = yield from find_direction(_at_most(pushes, gentle))
     seen = yield from excite(pushes, breakaway)
     mechanics = fit_mechanics(seen, dt)
     if reference.weight is None:
-        largest = (reference.peak_torque or 0.0) * mechanics.curve[-1][0]
+        # A curve that ends below what was tried is flat there: its end is the peak.
+        largest = (reference.peak_torque or 0.0) * mechanics.tried
     else:
+        # Pushed, it may stand anywhere; the user hangs the weight on its top.
+        yield from come_to_the_middle(turns.middle)
         share = yield from weigh(mechanics, WeighingParameters(), dt)
         largest = torque_of(reference.weight) / share
-    full_range = _full_range(opened, turns, reference)
     calibration = _calibration(opened, turns, mechanics, full_range, largest)
     return SelfTestResult(
         calibration=checked(calibration),
         explained=mechanics.explained,
         notes=tuple(_notes(opened, turns, mechanics, reference)),
     )
+
+
+def _at_most(pushes: ExcitationParameters, command: float) -> ExcitationParameters:
+    """Pushes that look for the first movement up to a command."""
+    return pushes._replace(largest_breakaway=min(pushes.largest_breakaway, command))
 
 
 def _check(reference: Reference) -> None:
@@ -223,10 +239,17 @@ def _check(reference: Reference) -> None:
 
 
 def _full_range(opened: WheelCalibration, turns: Turns, reference: Reference) -> float:
-    """Between the ends of the axis [rad], if the turns were lock to lock."""
+    """Between the ends of the axis [rad], if the turns were lock to lock.
+
+    Raises:
+        SelfTestStopped: If they were not.
+    """
     if reference.lock_to_lock is None:
         return opened.full_range
-    return opened.full_range * reference.lock_to_lock / turns.span
+    found = opened.full_range * reference.lock_to_lock / turns.span
+    if found > _WIDER * max(opened.full_range, reference.lock_to_lock):
+        raise SelfTestStopped("the wheel was not turned to both ends; run it again")
+    return found
 
 
 def _calibration(
@@ -264,10 +287,12 @@ def _notes(
     """What the user should know of this calibration."""
     notes = []
     highest = mechanics.curve[-1][0]
-    if highest < 1.0:
+    if highest < mechanics.tried:
+        notes.append(f"commands above {highest:g} add nothing, and are never sent")
+    if mechanics.tried < 1.0:
         notes.append(
-            f"commands above {highest:g} were too harsh to try or add nothing, and are "
-            "never sent"
+            f"commands above {mechanics.tried:g} were too harsh to try, and are never "
+            "sent"
         )
         if reference.weight is None:
             notes.append(
@@ -276,11 +301,15 @@ def _notes(
             )
     if not reference.turns:
         notes.append("range and side of the angle are the maker's: nobody turned it")
-    elif reference.lock_to_lock is None and turns.span < 0.9 * opened.full_range:
+    elif reference.lock_to_lock is None:
+        degrees = math.degrees(opened.full_range)
         notes.append(
-            f"the wheel turned over {turns.span / opened.full_range:.0%} of its axis; "
-            "give --range with its degrees from lock to lock"
+            f"the range is taken as {degrees:.0f} deg; if it is another from lock to "
+            "lock, run it again with --range DEG"
         )
+        if turns.span < 0.9 * opened.full_range:
+            share = turns.span / opened.full_range
+            notes.append(f"the wheel turned over {share:.0%} of its axis only")
     return notes
 
 
@@ -303,7 +332,8 @@ def compare(
         SelfTestStopped: If the wheel did what it should not.
     """
     yield from come_to_the_middle(0.0)
-    breakaway = yield from find_direction(pushes)
+    gentle = abs(device_command(stored, GENTLE_TORQUE))
+    breakaway = yield from find_direction(_at_most(pushes, gentle))
     seen = yield from excite(pushes, breakaway)
     found = fit_mechanics(seen, dt)
     highest = found.curve[-1][0]
