@@ -125,6 +125,19 @@ def test_manual_start_says_manual_and_a_condition_after_it_is_a_marker(
     assert record.columns["mode"][-1] == "lane_keeping"
 
 
+def test_record_holds_the_row_in_which_the_course_ends_and_nothing_after_it(
+    drive: Callable[[DriveSetup], Kept],
+) -> None:
+    kept = drive(drive_setup(length=100.0))
+    kept.ask("start")
+    kept.steps(400)
+    (record,) = kept.records()
+    position = record.columns["longitudinal_position"]
+    assert position[-2] < 100.0 <= position[-1]
+    np.testing.assert_allclose(np.diff(record.columns["time"]), 1 / 60)
+    assert kinds(record) == ["started", "ended"]
+
+
 def test_drive_that_never_starts_leaves_no_file(
     drive: Callable[[DriveSetup], Kept], tmp_path: Path
 ) -> None:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from costeer.base.packing import packed, unpack
 from costeer.loop.step import LoopParameters
 from costeer.loop.trial import shipped_network, trial_metadata
-from costeer.runtime.frame import PLACE, RUNNING
+from costeer.runtime.frame import ENDED, PLACE, RUNNING
 from costeer.runtime.setup import DriveSetup, drive_parameters
 from costeer.runtime.shared import Shared
 from costeer.runtime.stream import Marker, RecordStream
@@ -141,10 +141,12 @@ class Recorder:
         return kept
 
     def _running(self, frames: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Frames of the running trial, each moment once."""
-        time = frames[:, PLACE["time"]]
-        kept = (frames[:, PLACE["run_state"]] == RUNNING) & (time > self._last_time)
-        if kept.any():
-            self._last_time = float(time[kept][-1])
-        running: NDArray[np.float64] = frames[kept]
+        """Frames of the running trial, each moment once, that of its end included."""
+        time, state = frames[:, PLACE["time"]], frames[:, PLACE["run_state"]]
+        goes_on = (state == RUNNING) | (state == ENDED)
+        taken = frames[goes_on & (time > self._last_time)]
+        times = taken[:, PLACE["time"]]
+        running: NDArray[np.float64] = taken[np.diff(times, prepend=-1.0) > 0.0]
+        if len(running):
+            self._last_time = float(running[-1, PLACE["time"]])
         return running
