@@ -72,7 +72,7 @@ def test_page_drives_for_a_minute_and_changes_lanes(tmp_path: Path) -> None:
     # A page that waits for the processor loses the oldest frames, never the newest.
     assert rate == pytest.approx(60.0, rel=0.05)
     # 10 frames a second and more on an idle machine (costeer bench --drive).
-    assert told_at_end["fps"] > 4.0
+    assert told_at_end["fps"] > 3.0
     columns = read_record(record).columns
     assert columns["time"][-1] == pytest.approx(lasted, abs=1.5)
     assert {0, 1} <= set(columns["lane"].tolist())
