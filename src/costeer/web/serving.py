@@ -81,7 +81,7 @@ def _settings(app: ASGIApp) -> uvicorn.Config:
         ws_max_size=LARGEST_FRAME,
         ws_per_message_deflate=False,
         loop="auto",
-        lifespan="on",
+        lifespan="off",  # there is nothing to begin or end; twice Ctrl-C is no error
         access_log=False,
         log_level=logging.WARNING,
         proxy_headers=False,
