@@ -2,11 +2,9 @@
 
     python benchmarks/torque_observer.py [--data FOLDER]
 
-Three parts. Simulated devices are drawn and calibrated, and the calibration is held
-against the truth. Each then drives a trial: its hands have the torque that a virtual
-driver had, and some stiffness besides; its motor gives guidance and the rest of the
-column; the observer sees the angle alone. Last comes a real car whose sensor measured
-the torque, with the column identified on another part of the recording.
+Simulated devices are drawn, calibrated, and held against the truth. Each then drives a
+trial with the torque that a virtual driver had and some stiffness besides; the observer
+sees the angle alone. Last, a real car, its column identified on another part.
 """
 
 from __future__ import annotations
@@ -47,12 +45,10 @@ from costeer.sensing.torque_observer import (
     step,
 )
 
-NUM_DEVICES = 100
-NUM_DRIVERS = 12
+NUM_DEVICES, NUM_DRIVERS = 100, 12
 DT = 1.0 / 960.0
 PART = 60.0
 """Driven of each trial [s]."""
-DEFAULT_DATA = "../shared/data"
 
 Signal = NDArray[np.float64]
 
@@ -357,17 +353,18 @@ def print_real(folder: Path) -> None:
         return
     whole = real_parts(file)
     halves = [
-        Part(f"{p.name}, {name}", p.angle[cut], p.torque[cut])
+        Part(f"{p.name}, {name} half", p.angle[cut], p.torque[cut])
         for p in whole
-        for name, cut in (
-            ("first half", slice(None, p.angle.size // 2)),
-            ("second half", slice(p.angle.size // 2, None)),
-        )
+        for middle in [p.angle.size // 2]
+        for name, cut in {"1st": slice(middle), "2nd": slice(middle, None)}.items()
     ]
     pairs = [(whole[0], whole[1]), (whole[1], whole[0])]
     pairs += [(halves[i], halves[i + 1]) for i in (0, 2)]
-    print("\nreal car, 20 Hz: column identified on one part, judged on another")
-    print(HEADING)
+    print(
+        "\nreal car, 20 Hz: column identified on one part, judged on another",
+        HEADING,
+        sep="\n",
+    )
     for source, target in pairs:
         fit = fit_column(source.angle, source.torque, 0.05)
         seen = real_estimate(fit.parameters, target) + fit.offset
@@ -389,8 +386,8 @@ def words(column: TorqueObserverParameters) -> str:
 def main() -> None:
     """Print the three parts."""
     parser = argparse.ArgumentParser(description=__doc__)
-    usual = Path(os.environ.get("COSTEER_DATA", DEFAULT_DATA))
-    parser.add_argument("--data", type=Path, default=usual)
+    data = Path(os.environ.get("COSTEER_DATA", "../shared/data"))
+    parser.add_argument("--data", type=Path, default=data)
     parser.add_argument("--devices", type=int, default=NUM_DEVICES)
     arguments = parser.parse_args()
     random = np.random.default_rng(2)
