@@ -21,7 +21,7 @@ from costeer.runtime.frame import (
 )
 from costeer.runtime.guard import GuardParameters
 from costeer.runtime.setup import DriveSetup
-from costeer.runtime.wheels.simulated import SpringHands
+from costeer.runtime.wheels.simulated import SimulatedWheel, SpringHands
 from tests.runtime.rig import Rig, drive_setup, of, wheel_setup
 
 HANDS = SpringHands(stiffness=6.0, damping=0.6)
@@ -211,6 +211,37 @@ def test_loop_that_was_stuck_finds_its_trial_paused_and_can_resume(
     frames = drive.steps(70)
     assert (of(frames, "run_state")[1:] == RUNNING).all()
     assert of(frames, "fade")[2] < 0.1  # anew, from nothing
+
+
+def test_wheel_opened_anew_after_a_stall_may_first_have_to_be_turned(
+    rig: MakeRig, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    # SDL2 tells no angle of a wheel that was just opened until it has moved.
+    drive = rig(wheel_setup())
+    drive.ask("start")
+    drive.steps(5)
+    drive.shared.mailbox.put(stalled=1.0)
+    drive.steps(2)
+    monkeypatch.setattr(SimulatedWheel, "is_awake", False, raising=False)
+    drive.ask("resume")
+    assert of(drive.steps(1), "run_state")[-1] == PAUSED
+    assert "turn the wheel by 10 degrees" in drive.heard()[-1].text
+    drive.driving._cabin.wheel.is_awake = True  # type: ignore[union-attr]
+    drive.ask("resume")
+    assert of(drive.steps(1), "run_state")[-1] == RUNNING
+
+
+@pytest.mark.parametrize("where", ["waiting", "paused"])
+def test_trial_whose_wheel_was_lost_can_be_restarted(rig: MakeRig, where: str) -> None:
+    drive = rig(wheel_setup(unplug_at=0.2))
+    if where == "paused":
+        drive.ask("start")
+    assert of(drive.steps(20), "fault")[-1] == WHEEL_LOST
+    drive.ask("restart")
+    drive.ask("start")
+    frames = drive.steps(5)
+    assert of(frames, "run_state")[-1] == RUNNING
+    assert of(frames, "fault")[-1] == NO_FAULT
 
 
 def test_number_that_is_not_finite_pauses_the_trial_without_torque(

@@ -33,10 +33,10 @@ from costeer.runtime.frame import (
     WAITING,
     WHEEL_LOST,
 )
+from costeer.runtime.head.source import STALE_AFTER
 from costeer.runtime.indicator import Indicator
 from costeer.runtime.links import Links
 from costeer.runtime.patience import (
-    HEAD_PATIENCE,
     PAGE_PATIENCE,
     SERVER_PATIENCE,
     STOP_PATIENCE,
@@ -188,7 +188,7 @@ class Driving:
     def _sees_head(self, now: float) -> bool:
         """Whether the head was seen lately."""
         age = now - self._mailbox.get("head_time")
-        return self._mailbox.get("head_valid") > 0.5 and age <= HEAD_PATIENCE
+        return self._mailbox.get("head_valid") > 0.5 and age <= STALE_AFTER
 
     def _verdict(self) -> float:
         """The network's newest verdict, NaN if it is too old [-]."""
@@ -333,9 +333,7 @@ class Driving:
 
     def _begin(self, kind: str, text: str) -> None:
         """Run, if wheel and numbers allow it."""
-        if self._fault == STALLED:  # the watchdog has told the wheel to let go
-            self._mailbox.put(stalled=0.0)
-            self._lose_wheel()
+        self._forget_stall()
         if self._setup.wheel is not None and self._cabin.wheel is None:
             self._find_wheel()
         if self._fault == NOT_FINITE:
@@ -345,6 +343,13 @@ class Driving:
         self._cabin.meet_wheel()
         self._run_state = RUNNING
         self._mark(kind, text)
+
+    def _forget_stall(self) -> None:
+        """The watchdog has told the wheel to let go: it is to be opened anew, once."""
+        if self._fault == STALLED:
+            self._mailbox.put(stalled=0.0)
+            self._lose_wheel()
+            self._fault = WHEEL_LOST
 
     def _find_wheel(self) -> None:
         """Open the wheel again; it may take longer than the watchdog waits."""
@@ -365,12 +370,8 @@ class Driving:
             self._mark("paused", why)
 
     def _do_restart(self) -> None:
-        if self._fault == WHEEL_LOST:
-            raise ValueError(FAULTS[WHEEL_LOST])
-        if self._fault == STALLED:
-            self._mailbox.put(stalled=0.0)
-            self._lose_wheel()
-        self._fault = NO_FAULT
+        self._forget_stall()
+        self._fault = NO_FAULT  # a wheel that is lost is looked for at the start
         self._cabin.begin()
         self._leaders, self._last_event = 0, 0.0
         self._indicator.forget()

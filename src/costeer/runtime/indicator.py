@@ -4,14 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+from costeer.loop.rollout import REQUEST_DURATION
 from costeer.runtime.wheels.interface import (
     LEFT_INDICATOR,
     RIGHT_INDICATOR,
     WheelReading,
 )
-
-REQUEST_DURATION = 0.1
-"""How long the indicator asks for a lane change once it is set [s]."""
 
 _WORDS = {-1.0: "right", 0.0: "off", 1.0: "left"}
 

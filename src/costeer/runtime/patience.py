@@ -11,9 +11,6 @@ SERVER_PATIENCE = 5.0
 WHEEL_PATIENCE = 0.05
 """A reading older than this is stale [s]; with the guard's fall it ends by 100 ms."""
 
-HEAD_PATIENCE = 0.2
-"""A head seen longer ago than this is not seen [s]."""
-
 VERDICT_PATIENCE = 6
 """Frames after which the network's last verdict no longer counts [-]."""
 
