@@ -47,8 +47,7 @@ from costeer.sensing.torque_observer import (
 
 NUM_DEVICES, NUM_DRIVERS = 100, 12
 DT = 1.0 / 960.0
-PART = 60.0
-"""Driven of each trial [s]."""
+PART = 60.0  # driven of each trial [s]
 
 Signal = NDArray[np.float64]
 
@@ -375,12 +374,10 @@ def print_real(folder: Path) -> None:
         print_row("  stiffness alone", [judged(seen, target.torque, 0.05, 0.5)])
 
 
-def words(column: TorqueObserverParameters) -> str:
+def words(of: TorqueObserverParameters) -> str:
     """A column in short."""
-    return (
-        f"K {column.stiffness:.2f} N·m/rad, B {column.damping:.2f} N·m·s/rad, "
-        f"J {column.inertia:.3f} kg·m², friction {column.friction:.2f} N·m"
-    )
+    spring = f"K {of.stiffness:.2f} N·m/rad, B {of.damping:.2f} N·m·s/rad"
+    return f"{spring}, J {of.inertia:.3f} kg·m², friction {of.friction:.2f} N·m"
 
 
 def main() -> None:
