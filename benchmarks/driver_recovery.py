@@ -25,9 +25,9 @@ from costeer.identification.model import wheel_motion
 from costeer.identification.parameters import STEERING, Parameter, value_of
 from costeer.identification.recording import drive_of
 from costeer.identification.stretches import changes, lane_keeping
-from costeer.loop.columns import TrialRecord
 from costeer.loop.scenario import TrialSetup, trial_driver
 from costeer.loop.trial import simulate_trial
+from costeer.records.columns import TrialRecord
 
 HELD = (
     "vision.near_gain",

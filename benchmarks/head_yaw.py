@@ -19,15 +19,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from costeer.bench.machine import load, processor_name
-from costeer.runtime.head import face, tracker
-from costeer.runtime.head.calibration import (
+from costeer.devices.head import face, tracker
+from costeer.devices.head.calibration import (
     FitParameters,
     HeadCalibration,
     Look,
     fit_calibration,
 )
-from costeer.runtime.head.source import HeadDescription
-from tests.runtime.head.rendering import View, cabin, render
+from costeer.devices.head.source import HeadDescription
+from tests.devices.head.rendering import View, cabin, render
 
 SHAPES = {"canonical": "mean face", "own": "portrait's own"}
 HELD = {

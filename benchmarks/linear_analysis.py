@@ -24,14 +24,6 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import FormatStrFormatter
 
-from costeer.loop.linear import (
-    LinearLoop,
-    damping_ratio,
-    delay_margin,
-    gain_margin,
-    largest_modulus,
-    linear_loop,
-)
 from costeer.loop.scenario import loop_parameters
 from costeer.plant.parameters import CARS
 from costeer.study.figures.style import (
@@ -46,6 +38,14 @@ from costeer.study.figures.style import (
     svg_text,
 )
 from costeer.validation.hands_off import SPEEDS, hands_off_setup
+from costeer.validation.linear import (
+    LinearLoop,
+    damping_ratio,
+    delay_margin,
+    gain_margin,
+    largest_modulus,
+    linear_loop,
+)
 
 GAINS = np.geomspace(0.02, 1.0, 25)
 """Haptic gains of the table's worst case [-]."""

@@ -22,21 +22,21 @@ from numba import njit
 from numpy.typing import NDArray
 
 from costeer.controller.actuation import STRONG
-from costeer.identification.column import fit_column
-from costeer.loop.scenario import PILOT_SEED, TrialSetup
-from costeer.loop.trial import simulate_trial
-from costeer.plant.parameters import ColumnParameters
-from costeer.runtime.wheels.calibration import (
+from costeer.devices.wheels.calibration import (
     WheelCalibration,
     observer_parameters,
     uncalibrated,
 )
-from costeer.runtime.wheels.selftest import Reference, calibrate, run_procedure
-from costeer.runtime.wheels.simulated import (
+from costeer.devices.wheels.selftest import Reference, calibrate, run_procedure
+from costeer.devices.wheels.simulated import (
     SimulatedWheel,
     SimulatedWheelParameters,
     true_calibration,
 )
+from costeer.identification.column import fit_column
+from costeer.loop.scenario import PILOT_SEED, TrialSetup
+from costeer.loop.trial import simulate_trial
+from costeer.plant.parameters import ColumnParameters
 from costeer.sensing.torque_observer import (
     TorqueObserverParameters,
     TorqueObserverState,

@@ -2,12 +2,15 @@
 
 The package follows Yan et al., *Intention-Based Lane Changing and Lane Keeping
 Haptic Guidance Steering System*; its docstrings call that "the paper". Each folder
-is a room, and a room imports only the rooms before it: `base`, `plant`, `sensing`,
-`intention`, `controller`, `methods`, `drivers`, `loop`, `training`, `study`,
-`validation`, then `bench`, `doctor` and `cli`.
+is a room, and a room imports only those below it in the list of layers in
+pyproject.toml (docs/decisions/0001-layout.md).
 """
 
 from importlib.metadata import version
+
+from costeer import moved
+
+moved.install()
 
 __all__ = ["__version__"]
 

@@ -251,8 +251,8 @@ def check_priority() -> Finding:
 
 def check_wheels() -> Finding:
     """Steering wheels that are plugged in, and whether they are calibrated."""
-    from costeer.runtime.wheels.registry import found_wheels
-    from costeer.runtime.wheels.store import load_calibration
+    from costeer.devices.wheels.registry import found_wheels
+    from costeer.devices.wheels.store import load_calibration
 
     try:
         found = found_wheels()

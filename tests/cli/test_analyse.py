@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from costeer.cli import main
-from costeer.loop.record import write_record
+from costeer.records.record import write_record
 from tests.study.synthetic import synthetic_record
 
 EXAMPLES = Path(__file__).parents[2] / "examples" / "steering"

@@ -8,11 +8,11 @@ import pytest
 
 from costeer.cli import devices
 from costeer.cli.devices import chosen_head, chosen_wheel, pseudonym_number
-from costeer.runtime.head.calibration import HeadCalibration, save_calibration
-from costeer.runtime.head.source import HeadDescription
-from costeer.runtime.wheels.calibration import WheelCalibration
-from costeer.runtime.wheels.interface import WheelDescription
-from costeer.runtime.wheels.store import save_calibration as save_wheel
+from costeer.devices.head.calibration import HeadCalibration, save_calibration
+from costeer.devices.head.source import HeadDescription
+from costeer.devices.wheels.calibration import WheelCalibration
+from costeer.devices.wheels.interface import WheelDescription
+from costeer.devices.wheels.store import save_calibration as save_wheel
 
 WHEEL = WheelDescription("sdl", "0", "Good wheel", "046d-c24f")
 
@@ -25,7 +25,7 @@ def _home(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 def plug_in(monkeypatch: pytest.MonkeyPatch, *wheels: WheelDescription) -> None:
     found = list(wheels)
     monkeypatch.setattr(
-        "costeer.runtime.wheels.registry.found_wheels", lambda can="": found
+        "costeer.devices.wheels.registry.found_wheels", lambda can="": found
     )
 
 

@@ -15,7 +15,7 @@ import pytest
 
 from costeer import doctor
 from costeer.cli import main
-from costeer.runtime.wheels.interface import WheelDescription
+from costeer.devices.wheels.interface import WheelDescription
 
 
 class Usage(NamedTuple):
@@ -176,7 +176,7 @@ def test_wheel_that_is_not_calibrated_is_told(
 ) -> None:
     wheel = WheelDescription("sdl", "0", "Old wheel", "046d-c24f")
     monkeypatch.setenv("COSTEER_HOME", str(tmp_path))
-    monkeypatch.setattr("costeer.runtime.wheels.registry.found_wheels", lambda: [wheel])
+    monkeypatch.setattr("costeer.devices.wheels.registry.found_wheels", lambda: [wheel])
     finding = doctor.check_wheels()
     assert "Old wheel is not calibrated" in finding.detail
     assert finding.remedy == "run: costeer wheel calibrate"

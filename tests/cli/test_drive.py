@@ -16,7 +16,7 @@ import pytest
 
 from costeer.cli import drive as command
 from costeer.cli import main
-from costeer.loop.record import read_record
+from costeer.records.record import read_record
 from costeer.runtime.frame import FRAME_COLUMNS
 from costeer.web.drive import DriveOnPages, PageOptions
 from tests.runtime.rig import drive_setup

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from costeer.cli.driver_fit import show_fit
-from costeer.loop.record import write_record
+from costeer.records.record import write_record
 from tests.identification.driving import cut, recorded, recorded_with, with_columns
 
 

@@ -9,9 +9,9 @@ import pyarrow as pa
 import pytest
 
 from costeer.cli import main
-from costeer.loop.arrow import to_table
-from costeer.loop.columns import validated
-from costeer.loop.record import read_record, write_record
+from costeer.records.arrow import to_table
+from costeer.records.columns import validated
+from costeer.records.record import read_record, write_record
 from tests.study.synthetic import synthetic_record
 
 

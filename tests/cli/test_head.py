@@ -11,15 +11,15 @@ import pytest
 
 from costeer.cli.errors import exit_code_of
 from costeer.cli.group import load_command
-from costeer.runtime.head import looks, registry
-from costeer.runtime.head.calibration import (
+from costeer.devices.head import looks, registry
+from costeer.devices.head.calibration import (
     HeadCalibration,
     load_calibration,
     save_calibration,
 )
-from costeer.runtime.head.source import HeadDescription, HeadLost, HeadReading
-from tests.runtime.head.films import film
-from tests.runtime.head.rendering import View, render
+from costeer.devices.head.source import HeadDescription, HeadLost, HeadReading
+from tests.devices.head.films import film
+from tests.devices.head.rendering import View, render
 
 WEBCAM = HeadDescription("webcam", "0")
 
@@ -67,7 +67,7 @@ class Participant:
 def home(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A user's folder for this test, and looks that take no time."""
     monkeypatch.setenv("COSTEER_HOME", str(tmp_path))
-    # Its own tests are in tests/runtime/head/test_looks.py.
+    # Its own tests are in tests/devices/head/test_looks.py.
     monkeypatch.setattr(looks, "steady_yaw", quick_look)
     return tmp_path
 

@@ -14,7 +14,7 @@ from pathlib import Path
 import pytest
 
 from costeer.cli import main
-from costeer.loop.record import write_record
+from costeer.records.record import write_record
 from tests.study.synthetic import synthetic_record
 
 

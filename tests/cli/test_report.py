@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from costeer.cli import main
-from costeer.loop.record import read_record, write_record
+from costeer.records.record import read_record, write_record
 from costeer.study.configuration import StudySettings
 from costeer.study.folder import locked
 from costeer.study.material import HUMAN_DRIVER, find_records

@@ -8,7 +8,7 @@ import pytest
 
 from costeer.cli import main
 from costeer.cli.trial_summary import number, print_summary
-from costeer.loop.record import TrialRecord, read_record, write_record
+from costeer.records.record import TrialRecord, read_record, write_record
 from tests.study.synthetic import synthetic_record
 
 # 200 m take 10 s; the Python engine needs no compilation.

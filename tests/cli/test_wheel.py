@@ -12,14 +12,14 @@ import pytest
 from costeer.cli import wheel_session
 from costeer.cli.errors import exit_code_of
 from costeer.cli.group import load_command
+from costeer.devices.wheels import excitation, registry, selftest
+from costeer.devices.wheels.calibration import WheelCalibration, uncalibrated
+from costeer.devices.wheels.interface import WheelDescription, WheelReading
+from costeer.devices.wheels.pedals import NO_PEDAL, PedalAxis, pressed_axis
+from costeer.devices.wheels.simulated import SimulatedWheel, SimulatedWheelParameters
+from costeer.devices.wheels.store import load_calibration, save_calibration
 from costeer.runtime import clock
-from costeer.runtime.wheels import excitation, registry, selftest
-from costeer.runtime.wheels.calibration import WheelCalibration, uncalibrated
-from costeer.runtime.wheels.interface import WheelDescription, WheelReading
-from costeer.runtime.wheels.pedals import NO_PEDAL, PedalAxis, pressed_axis
-from costeer.runtime.wheels.simulated import SimulatedWheel, SimulatedWheelParameters
-from costeer.runtime.wheels.store import load_calibration, save_calibration
-from tests.runtime.wheels.user import User
+from tests.devices.wheels.user import User
 
 G29 = WheelDescription("sdl", "0", "Logitech G29", "046d-c24f")
 OTHER = WheelDescription("sdl", "1", "Unheard-of wheel", "1234-5678")
@@ -181,7 +181,7 @@ def test_a_weight_on_a_wheel_that_is_not_in_the_table(user: User) -> None:
     words = ("--weight", f"{mass:.6f}", "--radius", "0.14", "--no-pedals")
     assert run("calibrate", "--device", "2", *words) == 0
     found = load_calibration(OTHER)
-    # As tests/runtime/wheels/test_selftest.py has it.
+    # As tests/devices/wheels/test_selftest.py has it.
     assert found.torque_curve[-1][1] == pytest.approx(2.2, rel=0.03)
     assert found.accelerator_axis == found.brake_axis == -1
 

@@ -17,7 +17,7 @@ from mcap.reader import make_reader
 from costeer.export import mcap as exporter
 from costeer.export.markers import Marker, markers_of
 from costeer.export.mcap import write_mcap
-from costeer.loop.record import COLUMNS, TrialRecord
+from costeer.records.record import COLUMNS, TrialRecord
 from tests.study.synthetic import synthetic_record
 
 MARKERS = [{"time": 1.25, "kind": "paused", "text": "wheel lost"}]

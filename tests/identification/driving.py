@@ -13,7 +13,6 @@ from costeer.identification.model import wheel_motion
 from costeer.identification.recording import drive_of
 from costeer.identification.stretches import changes, lane_keeping
 from costeer.intention.wavefront import initial_state as network_memory
-from costeer.loop.columns import TrialRecord
 from costeer.loop.noise import driver_noise
 from costeer.loop.rollout import Script, rollout
 from costeer.loop.scenario import (
@@ -23,6 +22,7 @@ from costeer.loop.scenario import (
     trial_driver,
 )
 from costeer.loop.trial import idle_weights, record_columns, simulate_trial
+from costeer.records.columns import TrialRecord
 
 FRESH_SEED = 53
 """Nothing was ever chosen on drivers of this seed."""

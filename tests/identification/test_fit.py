@@ -11,7 +11,7 @@ import pytest
 from costeer.identification import steering
 from costeer.identification.fit import WHITE, DriverFit, fit_driver
 from costeer.identification.parameters import STEERING, Estimate, value_of
-from costeer.loop.columns import TrialRecord
+from costeer.records.columns import TrialRecord
 from tests.identification.driving import (
     cut,
     recorded,

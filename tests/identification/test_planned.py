@@ -9,7 +9,7 @@ from costeer.identification.direct import path_duration, planned_duration
 from costeer.identification.parameters import with_value
 from costeer.identification.recording import drive_of
 from costeer.identification.stretches import changes, completed
-from costeer.loop.columns import TrialRecord
+from costeer.records.columns import TrialRecord
 from costeer.validation.fitted import simulate
 from tests.identification.driving import manual_setup, true_driver
 

@@ -9,7 +9,7 @@ import pytest
 
 from costeer.identification.fit import fit_driver
 from costeer.identification.recording import NEEDED, drive_of
-from costeer.loop.columns import TrialRecord
+from costeer.records.columns import TrialRecord
 from tests.identification.driving import cut, recorded, with_columns
 
 

@@ -11,9 +11,9 @@ import pytest
 
 from costeer.intention.gru import random_weights
 from costeer.intention.weights import intention_network
-from costeer.loop.columns import COLUMNS, METADATA_FIELDS, TrialRecord
 from costeer.loop.scenario import TrialSetup
 from costeer.loop.trial import GUIDANCE_COLUMNS, simulate_trial, trial_duration
+from costeer.records.columns import COLUMNS, METADATA_FIELDS, TrialRecord
 
 MANUAL = TrialSetup(seed=3, intention="off", length=1800.0, change_duration=math.nan)
 STRONG = TrialSetup(

@@ -10,21 +10,21 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from costeer.loop.scenario import TrialSetup
-from costeer.runtime.driving import Driving
-from costeer.runtime.frame import FRAME_COLUMNS, PLACE
-from costeer.runtime.links import Links
-from costeer.runtime.setup import PLANT_DT, PLANT_STEPS, DriveSetup, trial_setup
-from costeer.runtime.shared import Shared, close_shared, make_shared
-from costeer.runtime.wheels.calibration import WheelCalibration
-from costeer.runtime.wheels.interface import Wheel, WheelDescription
-from costeer.runtime.wheels.simulated import (
+from costeer.devices.wheels.calibration import WheelCalibration
+from costeer.devices.wheels.interface import Wheel, WheelDescription
+from costeer.devices.wheels.simulated import (
     SimulatedWheelParameters,
     SpringHands,
     open_simulated,
     simulated_description,
     true_calibration,
 )
+from costeer.loop.scenario import TrialSetup
+from costeer.runtime.driving import Driving
+from costeer.runtime.frame import FRAME_COLUMNS, PLACE
+from costeer.runtime.links import Links
+from costeer.runtime.setup import PLANT_DT, PLANT_STEPS, DriveSetup, trial_setup
+from costeer.runtime.shared import Shared, close_shared, make_shared
 
 FOR_EVER = 1e9
 

@@ -7,6 +7,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
+from costeer.devices.wheels.simulated import SpringHands
 from costeer.runtime.frame import (
     ENDED,
     PAUSED,
@@ -14,7 +15,6 @@ from costeer.runtime.frame import (
     WAITING,
 )
 from costeer.runtime.setup import DriveSetup
-from costeer.runtime.wheels.simulated import SpringHands
 from tests.runtime.rig import Rig, drive_setup, of, wheel_setup
 
 HANDS = SpringHands(stiffness=6.0, damping=0.6)

@@ -8,6 +8,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
+from costeer.devices.wheels.simulated import SimulatedWheel, SpringHands
 from costeer.runtime.frame import (
     BROWSER_LOST,
     NO_FAULT,
@@ -21,7 +22,6 @@ from costeer.runtime.frame import (
 )
 from costeer.runtime.guard import GuardParameters
 from costeer.runtime.setup import DriveSetup
-from costeer.runtime.wheels.simulated import SimulatedWheel, SpringHands
 from tests.runtime.rig import Rig, drive_setup, of, wheel_setup
 
 HANDS = SpringHands(stiffness=6.0, damping=0.6)

@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from costeer.loop.columns import TrialRecord
-from costeer.loop.record import read_record
+from costeer.records.columns import TrialRecord
+from costeer.records.record import read_record
 from costeer.runtime import keeper as rooms
 from costeer.runtime.keeper import Keeper
 from costeer.runtime.setup import DriveSetup

@@ -15,12 +15,12 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from costeer.loop.record import read_record, read_stream
+from costeer.devices.wheels.simulated import SpringHands, simulated_description
+from costeer.records.record import read_record, read_stream
 from costeer.runtime.drive import Drive, Listener
 from costeer.runtime.frame import PLACE, STALLED
 from costeer.runtime.setup import DriveSetup
 from costeer.runtime.stream import Marker
-from costeer.runtime.wheels.simulated import SpringHands, simulated_description
 from tests.runtime.rig import drive_setup, wheel_setup
 
 PATIENCE = 20.0

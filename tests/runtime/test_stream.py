@@ -13,9 +13,9 @@ import numpy as np
 import pyarrow.parquet as pq
 import pytest
 
-from costeer.loop.record import read_record, read_recording, read_stream
 from costeer.loop.rows import ROW_COLUMNS
 from costeer.loop.scenario import TrialSetup
+from costeer.records.record import read_record, read_recording, read_stream
 from costeer.runtime.frame import TRACE_COLUMNS
 from costeer.runtime.recorder import drive_metadata
 from costeer.runtime.setup import DriveSetup, trial_setup

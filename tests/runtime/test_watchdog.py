@@ -7,10 +7,10 @@ import os
 import numpy as np
 import pytest
 
+from costeer.devices.wheels.interface import WheelDescription
 from costeer.runtime import watchdog
 from costeer.runtime.shared import MAILBOX, Mailbox
 from costeer.runtime.watchdog import PATIENCE, Watch, Watched, orphaned, silence
-from costeer.runtime.wheels.interface import WheelDescription
 
 
 def mailbox(**values: float) -> Mailbox:

@@ -6,8 +6,8 @@ import hashlib
 from collections.abc import Callable
 from pathlib import Path
 
-from costeer.loop.record import TrialRecord
 from costeer.loop.scenario import TrialSetup
+from costeer.records.record import TrialRecord
 from costeer.study.configuration import StudySettings
 from costeer.study.run import StudyOutcome, run_study
 from tests.study.synthetic import synthetic_record

@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from costeer.loop.record import COLUMNS, TrialRecord
+from costeer.records.record import COLUMNS, TrialRecord
 
 Signal = NDArray[np.float64]
 

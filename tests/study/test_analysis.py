@@ -14,7 +14,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 
-from costeer.loop.record import write_record
+from costeer.records.record import write_record
 from costeer.study.analysis import Analysis, analyse_file, as_json
 from costeer.study.definitions import MeasureParameters
 from costeer.study.measures import lane_change_rows, trial_row

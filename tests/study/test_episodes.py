@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from costeer.controller.strength import StrengthParameters, initial_state, step
-from costeer.loop.record import TrialRecord, read_record, write_record
+from costeer.records.record import TrialRecord, read_record, write_record
 from costeer.study.figures import gain, inconsistency
 from costeer.study.figures.episodes import (
     LONGEST_TAIL,

@@ -8,7 +8,7 @@ from math import isnan, pi, sqrt
 import numpy as np
 import pytest
 
-from costeer.loop.columns import TrialRecord
+from costeer.records.columns import TrialRecord
 from costeer.study.definitions import MeasureParameters
 from costeer.study.measures import lane_change_rows, strength, trial_row
 from costeer.study.trial_measures import prepare, trial_measures

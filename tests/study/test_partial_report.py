@@ -11,7 +11,7 @@ from pathlib import Path
 import pandas as pd
 import pytest
 
-from costeer.loop.record import read_record, write_record
+from costeer.records.record import read_record, write_record
 from costeer.study.material import HUMAN_DRIVER, find_records
 from costeer.study.report import write_report
 from costeer.study.trial_tables import LANE_CHANGES_FILE, TRIALS_FILE

@@ -10,8 +10,8 @@ from typing import Any
 
 import pytest
 
-from costeer.loop.record import TrialRecord, read_record, write_record
 from costeer.loop.scenario import TrialSetup
+from costeer.records.record import TrialRecord, read_record, write_record
 from costeer.study import trials
 from costeer.study.configuration import StudySettings
 from costeer.study.folder import locked, record_path

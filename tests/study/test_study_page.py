@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from costeer.cli import main
-from costeer.loop.record import read_record
+from costeer.records.record import read_record
 from costeer.study.conditions import CONDITIONS, Condition
 
 PAGE = (Path(__file__).parents[2] / "docs" / "study.md").read_text(encoding="utf-8")

@@ -11,7 +11,7 @@ import pandas as pd
 import pytest
 
 from costeer.intention.features import FEATURES
-from costeer.loop.record import TrialRecord
+from costeer.records.record import TrialRecord
 from costeer.training.recordings import read_recordings, recording, recordings_of
 from tests.training.synthetic import columns, drive
 

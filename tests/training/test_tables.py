@@ -11,7 +11,7 @@ import pytest
 from numpy.typing import NDArray
 
 from costeer.intention.features import DISTANCE, FEATURES
-from costeer.loop.record import TrialRecord
+from costeer.records.record import TrialRecord
 from costeer.training.recordings import Recording, read_recordings, recordings_of, runs
 from costeer.training.tables import (
     absent_signals,

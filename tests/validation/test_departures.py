@@ -10,9 +10,9 @@ import pytest
 from numpy.typing import NDArray
 from scipy import integrate, linalg, stats
 
-from costeer.loop.columns import TrialRecord
 from costeer.loop.scenario import PILOT_SEED, TrialSetup
 from costeer.loop.trial import simulate_trial
+from costeer.records.columns import TrialRecord
 from costeer.study.measures import trial_row
 from costeer.validation.departures import (
     Departures,

@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from costeer.loop.columns import TrialRecord
+from costeer.records.columns import TrialRecord
 from costeer.validation.glances import (
     false_glance_share,
     first_glance_lead,

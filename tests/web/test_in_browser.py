@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from playwright.sync_api import Page
 
-from costeer.loop.record import read_record
+from costeer.records.record import read_record
 from tests.web.browser import page_of, picture, serving, stop
 
 pytestmark = [pytest.mark.browser, pytest.mark.timeout(400)]

@@ -8,8 +8,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from costeer.loop.record import COLUMN_NAMES, MODES, TrialRecord
 from costeer.loop.rows import ROW_COLUMNS
+from costeer.records.record import COLUMN_NAMES, MODES, TrialRecord
 from costeer.web.app import replay_app
 from costeer.web.replay import NEEDED, Replay, replay_of
 from tests.study.synthetic import synthetic_record

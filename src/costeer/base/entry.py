@@ -25,6 +25,7 @@ _settings = cast("Any", numba.config)  # Any: Numba sets its attributes at impor
 
 COMPILED_ROOMS = (
     "base",
+    "records",
     "plant",
     "sensing",
     "intention",

@@ -17,16 +17,16 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from costeer.loop.scenario import TrialSetup
-from costeer.runtime.clock import favour_thread
-from costeer.runtime.frame import PLACE, RUNNING, TRACE_COLUMNS
-from costeer.runtime.setup import PLANT_DT, DriveSetup, trial_setup
-from costeer.runtime.wheels.simulated import (
+from costeer.devices.wheels.simulated import (
     SimulatedWheelParameters,
     SpringHands,
     simulated_description,
     true_calibration,
 )
+from costeer.loop.scenario import TrialSetup
+from costeer.runtime.clock import favour_thread
+from costeer.runtime.frame import PLACE, RUNNING, TRACE_COLUMNS
+from costeer.runtime.setup import PLANT_DT, DriveSetup, trial_setup
 from costeer.web.app import drive_app
 from costeer.web.drive import DriveOnPages, PageOptions
 from costeer.web.security import access_for

@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, NamedTuple
 from costeer.cli.console import note
 
 if TYPE_CHECKING:
-    from costeer.runtime.head.calibration import HeadCalibration
-    from costeer.runtime.head.source import HeadDescription
-    from costeer.runtime.wheels.calibration import WheelCalibration
-    from costeer.runtime.wheels.interface import WheelDescription
+    from costeer.devices.head.calibration import HeadCalibration
+    from costeer.devices.head.source import HeadDescription
+    from costeer.devices.wheels.calibration import WheelCalibration
+    from costeer.devices.wheels.interface import WheelDescription
 
 _OPENTRACK_PORT = "4242"
 _LARGEST_NUMBER = 10_000_000
@@ -53,14 +53,14 @@ def chosen_wheel(word: str) -> ChosenWheel:
 
 
 def _with_calibration(description: WheelDescription) -> ChosenWheel:
-    from costeer.runtime.wheels.store import load_calibration
+    from costeer.devices.wheels.store import load_calibration
 
     return ChosenWheel("wheel", description, load_calibration(description))
 
 
 def _simulated_wheel() -> ChosenWheel:
     """A simulated wheel that hands hold straight ahead."""
-    from costeer.runtime.wheels.simulated import (
+    from costeer.devices.wheels.simulated import (
         SimulatedWheelParameters,
         SpringHands,
         simulated_description,
@@ -75,7 +75,7 @@ def _simulated_wheel() -> ChosenWheel:
 
 
 def _named_wheel(word: str) -> WheelDescription:
-    from costeer.runtime.wheels.registry import found_wheels
+    from costeer.devices.wheels.registry import found_wheels
 
     if channel := word.removeprefix("can:") if word.startswith("can:") else "":
         return found_wheels(can=channel)[0]
@@ -96,7 +96,7 @@ def _named_wheel(word: str) -> WheelDescription:
 
 def _calibrated_wheel() -> ChosenWheel:
     """The first wheel that is plugged in and calibrated, else the keyboard."""
-    from costeer.runtime.wheels.registry import found_wheels
+    from costeer.devices.wheels.registry import found_wheels
 
     try:
         found = found_wheels()
@@ -122,7 +122,7 @@ def chosen_head(word: str, participant: str) -> HeadCalibration | None:
     Raises:
         ValueError: If there is no such tracker, or the participant is not calibrated.
     """
-    from costeer.runtime.head.calibration import HeadCalibration, load_calibration
+    from costeer.devices.head.calibration import HeadCalibration, load_calibration
 
     if word == "none":
         return None
@@ -144,7 +144,7 @@ def chosen_head(word: str, participant: str) -> HeadCalibration | None:
 
 
 def _tracker(word: str) -> HeadDescription:
-    from costeer.runtime.head.source import HeadDescription
+    from costeer.devices.head.source import HeadDescription
 
     kind, _, address = word.partition(":")
     usual = {"webcam": "0", "opentrack": _OPENTRACK_PORT, "lsl": ""}

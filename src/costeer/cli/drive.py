@@ -157,7 +157,7 @@ def send_to_lsl(session: DriveOnPages) -> None:
     import time
 
     from costeer.export.lsl import TrialOutlet, lsl_clock
-    from costeer.loop.columns import COLUMNS_BY_NAME
+    from costeer.records.columns import COLUMNS_BY_NAME
     from costeer.runtime.frame import FRAME_COLUMNS, PLACE
 
     units = {

@@ -13,7 +13,7 @@ from costeer.cli.driver_tables import refuse_bad_plot
 
 if TYPE_CHECKING:
     from costeer.identification.fit import DriverFit
-    from costeer.loop.columns import TrialRecord
+    from costeer.records.columns import TrialRecord
     from costeer.validation.fitted import Check
 
 
@@ -31,7 +31,7 @@ def show_fit(path: Path, as_json: bool, jobs: int | None, plot: Path | None) -> 
         OSError: If a file cannot be read or written.
     """
     from costeer.identification.fit import fit_driver
-    from costeer.loop.record import read_recording
+    from costeer.records.record import read_recording
     from costeer.study.jobs import default_jobs
     from costeer.validation.fitted import REPEATS, check_fit
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 if TYPE_CHECKING:
-    from costeer.loop.record import TrialRecord
+    from costeer.records.record import TrialRecord
 
 FORMATS = {"mcap": ".mcap", "parquet": ".parquet"}
 """What a record can be written as, and how such a file's name ends."""
@@ -31,7 +31,7 @@ def export(
         costeer export out/drive.arrow --to parquet --out out/saved.parquet
     """
     _check_target(file, out, to)
-    from costeer.loop.record import read_recording
+    from costeer.records.record import read_recording
 
     record = read_recording(file)
     out.parent.mkdir(parents=True, exist_ok=True)
@@ -59,7 +59,7 @@ def _check_target(file: Path, out: Path, to: str) -> None:
 def _write(record: TrialRecord, out: Path, to: str) -> None:
     """Write the record in a format."""
     if to == "parquet":
-        from costeer.loop.record import write_record
+        from costeer.records.record import write_record
 
         write_record(out, record)
         return

@@ -9,7 +9,7 @@ import typer
 from costeer.cli.validate import in_range
 
 if TYPE_CHECKING:
-    from costeer.runtime.head.source import HeadDescription
+    from costeer.devices.head.source import HeadDescription
 
 MIRROR_ANGLE = 30.0
 """Where the marks or mirrors are if not said [deg]."""
@@ -110,7 +110,7 @@ def _refuse_useless(action: str, options: dict[str, float | None]) -> None:
 
 def _webcam(mirrored: bool) -> HeadDescription:
     """The tracker if none is named: the first camera."""
-    from costeer.runtime.head.source import HeadDescription
+    from costeer.devices.head.source import HeadDescription
 
     return HeadDescription("webcam", "0", mirrored=mirrored)
 
@@ -123,7 +123,7 @@ def _tracker(
     Raises:
         ValueError: If they name several, or channels of none.
     """
-    from costeer.runtime.head.source import HeadDescription
+    from costeer.devices.head.source import HeadDescription
 
     named = {kind: address for kind, address in addresses.items() if address}
     told = {name: word for name, word in channels.items() if word}

@@ -13,8 +13,8 @@ import typer
 from costeer.cli.console import note
 
 if TYPE_CHECKING:
-    from costeer.runtime.head.calibration import HeadCalibration, Look, LookParameters
-    from costeer.runtime.head.source import HeadDescription, HeadReading, HeadSource
+    from costeer.devices.head.calibration import HeadCalibration, Look, LookParameters
+    from costeer.devices.head.source import HeadDescription, HeadReading, HeadSource
 
 SHOWN_EVERY = 0.5
 """Time from one line of `costeer head test` to the next [s]."""
@@ -34,14 +34,14 @@ def calibrate(
         ValueError: If a look or the line through them is refused.
         OSError: If the tracker is not there, or the file cannot be written.
     """
-    from costeer.runtime.head.calibration import (
+    from costeer.devices.head.calibration import (
         FitParameters,
         LookParameters,
         check_pseudonym,
         fit_calibration,
         save_calibration,
     )
-    from costeer.runtime.head.registry import open_head
+    from costeer.devices.head.registry import open_head
 
     check_pseudonym(participant)
     left, right = map(math.radians, angles_deg)
@@ -59,8 +59,8 @@ def calibrate(
 
 def _looks(source: HeadSource, parameters: LookParameters) -> list[Look]:
     """Straight ahead, left and right, each after a press of Enter."""
-    from costeer.runtime.head.calibration import Look
-    from costeer.runtime.head.looks import steady_yaw
+    from costeer.devices.head.calibration import Look
+    from costeer.devices.head.looks import steady_yaw
 
     targets = {
         "straight ahead at the road": 0.0,
@@ -90,7 +90,7 @@ def show_tracker(
         ValueError: If the participant is not calibrated.
         OSError: If the tracker is not there.
     """
-    from costeer.runtime.head.registry import open_head
+    from costeer.devices.head.registry import open_head
 
     calibration = _calibration(participant, tracker)
     with closing(open_head(calibration.tracker)) as source:
@@ -112,8 +112,8 @@ def _calibration(
     participant: str | None, tracker: HeadDescription | None
 ) -> HeadCalibration:
     """The participant's, or none for the tracker."""
-    from costeer.runtime.head.calibration import HeadCalibration, load_calibration
-    from costeer.runtime.head.source import HeadDescription
+    from costeer.devices.head.calibration import HeadCalibration, load_calibration
+    from costeer.devices.head.source import HeadDescription
 
     if participant is None:
         return HeadCalibration("", tracker or HeadDescription("webcam", "0"))
@@ -132,8 +132,8 @@ def _watch(
     source: HeadSource, calibration: HeadCalibration, seconds: float
 ) -> list[HeadReading]:
     """New readings within so many seconds; a line for some of them."""
-    from costeer.runtime.head.calibration import calibrated
-    from costeer.runtime.head.source import HeadLost
+    from costeer.devices.head.calibration import calibrated
+    from costeer.devices.head.source import HeadLost
 
     readings: dict[float, HeadReading] = {}
     start = shown = time.perf_counter()

@@ -34,7 +34,7 @@ def replay(
     Example:
         costeer replay out/trial.parquet
     """
-    from costeer.loop.record import read_recording
+    from costeer.records.record import read_recording
     from costeer.web.app import replay_app
     from costeer.web.replay import replay_of
     from costeer.web.security import access_for

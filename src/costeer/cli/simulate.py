@@ -99,9 +99,9 @@ def simulate_to_file(out: Path, setup: TrialSetup, engine: str = "numba") -> Non
         ValueError: If the setup cannot be run, or the file is not to be replaced.
         OSError: If the file cannot be written.
     """
-    from costeer.loop.record import write_record
     from costeer.loop.scenario import check_setup, is_assisted
     from costeer.loop.trial import simulate_trial
+    from costeer.records.record import write_record
 
     check_setup(setup)
     if setup.trigger_times and not is_assisted(setup):
@@ -148,8 +148,8 @@ def refuse_to_replace(out: Path) -> None:
     Raises:
         ValueError: If there is a folder, or a file that is no simulated trial.
     """
-    from costeer.loop.record import read_record
     from costeer.loop.scenario import DRIVERS
+    from costeer.records.record import read_record
 
     if not out.exists():
         return

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from costeer.loop.record import TrialRecord
+    from costeer.records.record import TrialRecord
     from costeer.study.measures import Row
 
 RIGHT = -1

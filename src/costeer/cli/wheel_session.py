@@ -15,10 +15,10 @@ from costeer.cli.console import note, print_table
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from costeer.runtime.wheels.calibration import WheelCalibration
-    from costeer.runtime.wheels.interface import Wheel, WheelDescription
-    from costeer.runtime.wheels.pedals import ShowsAxes
-    from costeer.runtime.wheels.selftest import Comparison, Procedure, Reference
+    from costeer.devices.wheels.calibration import WheelCalibration
+    from costeer.devices.wheels.interface import Wheel, WheelDescription
+    from costeer.devices.wheels.pedals import ShowsAxes
+    from costeer.devices.wheels.selftest import Comparison, Procedure, Reference
 
 Result = TypeVar("Result")
 
@@ -53,8 +53,8 @@ def show_wheels(can: str) -> None:
     Args:
         can: Bus of a SENSO-Wheel; empty if there is none.
     """
-    from costeer.runtime.wheels.registry import found_wheels
-    from costeer.runtime.wheels.store import calibration_path, stored_calibrations
+    from costeer.devices.wheels.registry import found_wheels
+    from costeer.devices.wheels.store import calibration_path, stored_calibrations
 
     stored = stored_calibrations()
     known = {each.identity for each in stored.calibrations}
@@ -87,8 +87,8 @@ def chosen(number: int | None, can: str, simulated: bool) -> Chosen:
         ValueError: If there is none, or no such number.
         ModuleNotFoundError: If the package for wheels is not installed.
     """
-    from costeer.runtime.wheels.registry import found_wheels
-    from costeer.runtime.wheels.simulated import simulated_description
+    from costeer.devices.wheels.registry import found_wheels
+    from costeer.devices.wheels.simulated import simulated_description
 
     if simulated:
         return Chosen(simulated_description(), simulated=True)
@@ -124,8 +124,8 @@ def known(
     Raises:
         ValueError: If nothing tells the scale of the torque.
     """
-    from costeer.runtime.wheels.references import Weight, known_peak_torque
-    from costeer.runtime.wheels.selftest import Reference
+    from costeer.devices.wheels.references import Weight, known_peak_torque
+    from costeer.devices.wheels.selftest import Reference
 
     if chosen.simulated and (weight or lock_to_lock):
         raise ValueError(
@@ -151,7 +151,7 @@ def known(
 
 
 def _simulated_peak() -> float:
-    from costeer.runtime.wheels.simulated import SimulatedWheelParameters
+    from costeer.devices.wheels.simulated import SimulatedWheelParameters
 
     return SimulatedWheelParameters().torque_curve[-1][1]
 
@@ -168,8 +168,8 @@ def calibrate(chosen: Chosen, reference: Reference, pedals: bool) -> None:
         ValueError: If the wheel did what it should not.
         OSError: If it is lost, or the file cannot be written.
     """
-    from costeer.runtime.wheels import excitation, selftest
-    from costeer.runtime.wheels.store import save_calibration
+    from costeer.devices.wheels import excitation, selftest
+    from costeer.devices.wheels.store import save_calibration
 
     pushes = excitation.DEFAULTS
     _warn(chosen, pushes.duration)
@@ -194,8 +194,8 @@ def check(chosen: Chosen) -> None:
         ValueError: If it is not calibrated, or does not do what its calibration says.
         OSError: If it is lost.
     """
-    from costeer.runtime.wheels import selftest
-    from costeer.runtime.wheels.store import CALIBRATE, load_calibration
+    from costeer.devices.wheels import selftest
+    from costeer.devices.wheels.store import CALIBRATE, load_calibration
 
     stored = load_calibration(chosen.description)
     pushes = selftest.TEST_PUSHES
@@ -233,16 +233,16 @@ def _warn(chosen: Chosen, seconds: float) -> None:
 
 
 def _uncalibrated(chosen: Chosen) -> WheelCalibration:
-    from costeer.runtime.wheels.calibration import uncalibrated
-    from costeer.runtime.wheels.references import known_angle_sign
+    from costeer.devices.wheels.calibration import uncalibrated
+    from costeer.devices.wheels.references import known_angle_sign
 
     kind, identity = chosen.description.kind, chosen.description.identity
     return uncalibrated(identity, angle_sign=known_angle_sign(kind))
 
 
 def _opened(chosen: Chosen, calibration: WheelCalibration) -> Wheel:
-    from costeer.runtime.wheels.registry import open_wheel
-    from costeer.runtime.wheels.simulated import open_simulated
+    from costeer.devices.wheels.registry import open_wheel
+    from costeer.devices.wheels.simulated import open_simulated
 
     if chosen.simulated:
         return open_simulated(chosen.description, calibration)
@@ -251,8 +251,8 @@ def _opened(chosen: Chosen, calibration: WheelCalibration) -> Wheel:
 
 def _run(chosen: Chosen, wheel: Wheel, procedure: Procedure[Result]) -> Result:
     """Run a procedure by the wall clock, a simulated wheel without one."""
+    from costeer.devices.wheels.selftest import reading_rate, run_procedure
     from costeer.runtime.clock import Pacer
-    from costeer.runtime.wheels.selftest import reading_rate, run_procedure
 
     wait = _no_wait if chosen.simulated else Pacer(1.0 / reading_rate(wheel)).wait
     return run_procedure(wheel, procedure, wait, note)
@@ -286,7 +286,7 @@ def _wake(wheel: Wheel) -> None:
 
 def _with_pedals(wheel: Wheel, raw: WheelCalibration) -> WheelCalibration:
     """Let the user press the pedals; without an answer there are none."""
-    from costeer.runtime.wheels.pedals import ShowsAxes, pressed_axis
+    from costeer.devices.wheels.pedals import ShowsAxes, pressed_axis
 
     if not isinstance(wheel, ShowsAxes) or len(wheel.axes()) < 2:
         return raw
@@ -312,7 +312,7 @@ def _axes(wheel: ShowsAxes, pedal: str) -> Iterator[tuple[float, ...]]:
 
 def _show(calibration: WheelCalibration) -> None:
     """Print a calibration."""
-    from costeer.runtime.wheels.calibration import largest_torque
+    from costeer.devices.wheels.calibration import largest_torque
 
     rows = [
         ("angle grows", _side(calibration.angle_sign), ""),

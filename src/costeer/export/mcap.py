@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from costeer.export.markers import Marker, markers_of
-from costeer.loop.columns import COLUMNS_BY_NAME, TrialRecord, check_time
+from costeer.records.columns import COLUMNS_BY_NAME, TrialRecord, check_time
 
 SAMPLE = "costeer.TrialSample"
 """Type of the messages on `/trial`, one for each row of the record."""

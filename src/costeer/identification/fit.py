@@ -28,7 +28,7 @@ from costeer.identification.stretches import (
     lane_keeping,
     total_time,
 )
-from costeer.loop.columns import TrialRecord
+from costeer.records.columns import TrialRecord
 
 SHORTEST_FIT = 60.0
 """Lane keeping that a fit needs in all [s]: about ten swings of the wander."""

@@ -12,11 +12,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from costeer.identification.drive import Drive, Signal
-from costeer.loop.columns import COLUMNS_BY_NAME, TrialRecord, check_time, converted
-from costeer.loop.plausible import suspicions
 from costeer.loop.step import DT
 from costeer.plant.parameters import CARS, ColumnParameters, RoadParameters
 from costeer.plant.road import lane_at, lane_centre
+from costeer.records.columns import COLUMNS_BY_NAME, TrialRecord, check_time, converted
+from costeer.records.plausible import suspicions
 
 NEEDED = (
     "time",

@@ -21,7 +21,6 @@ from costeer.intention.wavefront import (
 )
 from costeer.intention.wavefront import initial_state as network_memory
 from costeer.intention.weights import IntentionNetwork, load_weights
-from costeer.loop.columns import COLUMNS, MODES, Column, TrialRecord
 from costeer.loop.noise import driver_noise
 from costeer.loop.rollout import Script, rollout
 from costeer.loop.rows import ROW_COLUMNS
@@ -32,6 +31,7 @@ from costeer.loop.scenario import (
     loop_parameters,
 )
 from costeer.loop.step import DT, LoopParameters
+from costeer.records.columns import COLUMNS, MODES, Column, TrialRecord
 
 SLOWEST_SHARE = 0.5
 """A trial ends at the latest when a car at this share of its speed would arrive."""

@@ -13,6 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from costeer.base.packing import leaf_names
+from costeer.devices.wheels.calibration import observer_parameters
+from costeer.devices.wheels.interface import Wheel, WheelReading
 from costeer.loop.person import PersonInput, initial_motion
 from costeer.loop.real_wheel import WheelInput
 from costeer.loop.realtime import (
@@ -40,8 +42,6 @@ from costeer.runtime.hands import (
 from costeer.runtime.hands import step as move_hands
 from costeer.runtime.setup import PLANT_DT, PLANT_STEPS, DriveSetup, drive_parameters
 from costeer.runtime.tunables import Tunable, place_of
-from costeer.runtime.wheels.calibration import observer_parameters
-from costeer.runtime.wheels.interface import Wheel, WheelReading
 from costeer.sensing.torque_observer import TorqueObserverParameters
 
 _MOTION = leaf_names(initial_motion(LoopParameters()))

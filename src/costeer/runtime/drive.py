@@ -15,9 +15,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from costeer.devices.head.process import run_head_process
+from costeer.devices.wheels.registry import emergency_stop
 from costeer.runtime.clock import favour_thread
 from costeer.runtime.frame import FRAME_COLUMNS, PAUSED, PLACE, STALLED
-from costeer.runtime.head.process import run_head_process
 from costeer.runtime.keeper import Keeper
 from costeer.runtime.links import Links
 from costeer.runtime.process import run_realtime
@@ -26,7 +27,6 @@ from costeer.runtime.shared import Shared, close_shared, make_shared, open_share
 from costeer.runtime.stream import Marker
 from costeer.runtime.verdicts import run_network
 from costeer.runtime.watchdog import Watched, run_watchdog
-from costeer.runtime.wheels.registry import emergency_stop
 
 START_PATIENCE = 180.0
 """The first start compiles for a minute on a slow machine [s]."""

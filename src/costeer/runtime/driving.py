@@ -15,6 +15,14 @@ from typing import Any
 
 import numpy as np
 
+from costeer.devices.head.source import STALE_AFTER
+from costeer.devices.wheels.calibration import WheelCalibration
+from costeer.devices.wheels.interface import (
+    Wheel,
+    WheelDescription,
+    WheelLost,
+)
+from costeer.devices.wheels.registry import open_wheel
 from costeer.loop.rows import ROW_COLUMNS
 from costeer.plant.road import adjacent_side
 from costeer.runtime.cabin import Cabin, Controls
@@ -33,7 +41,6 @@ from costeer.runtime.frame import (
     WAITING,
     WHEEL_LOST,
 )
-from costeer.runtime.head.source import STALE_AFTER
 from costeer.runtime.indicator import Indicator
 from costeer.runtime.links import Links
 from costeer.runtime.patience import (
@@ -47,13 +54,6 @@ from costeer.runtime.setup import DriveSetup, drive_parameters, leader_draws
 from costeer.runtime.shared import Shared
 from costeer.runtime.trace import Tracer
 from costeer.runtime.tunables import TUNABLES
-from costeer.runtime.wheels.calibration import WheelCalibration
-from costeer.runtime.wheels.interface import (
-    Wheel,
-    WheelDescription,
-    WheelLost,
-)
-from costeer.runtime.wheels.registry import open_wheel
 
 NEVER = math.inf
 

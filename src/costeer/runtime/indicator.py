@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from costeer.loop.rollout import REQUEST_DURATION
-from costeer.runtime.wheels.interface import (
+from costeer.devices.wheels.interface import (
     LEFT_INDICATOR,
     RIGHT_INDICATOR,
     WheelReading,
 )
+from costeer.loop.rollout import REQUEST_DURATION
 
 _WORDS = {-1.0: "right", 0.0: "off", 1.0: "left"}
 

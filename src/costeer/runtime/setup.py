@@ -8,13 +8,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from costeer.base.array import Real
+from costeer.devices.head.calibration import HeadCalibration
+from costeer.devices.wheels.calibration import WheelCalibration
+from costeer.devices.wheels.interface import WheelDescription
 from costeer.drivers.driver import DriverParameters
 from costeer.loop.scenario import TrialSetup, loop_parameters
 from costeer.loop.step import DT, LoopParameters
 from costeer.methods.registry import METHODS, method_named
-from costeer.runtime.head.calibration import HeadCalibration
-from costeer.runtime.wheels.calibration import WheelCalibration
-from costeer.runtime.wheels.interface import WheelDescription
 from costeer.study.conditions import Condition, condition
 
 PLANT_STEPS = 16

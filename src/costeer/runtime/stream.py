@@ -17,11 +17,11 @@ import pyarrow.ipc
 import pyarrow.parquet as pq
 from numpy.typing import NDArray
 
-from costeer.loop.arrow import record_schema, to_table
-from costeer.loop.columns import TrialRecord, validated
-from costeer.loop.record import MARKERS_KEY, read_stream, stream_table, write_record
 from costeer.loop.rows import ROW_COLUMNS
 from costeer.loop.trial import record_columns
+from costeer.records.arrow import record_schema, to_table
+from costeer.records.columns import TrialRecord, validated
+from costeer.records.record import MARKERS_KEY, read_stream, stream_table, write_record
 from costeer.runtime.frame import TRACE_COLUMNS, TRACE_UNITS
 
 Marker = dict[str, object]

@@ -14,10 +14,10 @@ import time
 from contextlib import suppress
 from typing import NamedTuple
 
+from costeer.devices.wheels.interface import WheelDescription
+from costeer.devices.wheels.registry import emergency_stop, prepare_stop
 from costeer.runtime.clock import raise_priority
 from costeer.runtime.shared import Mailbox, close_shared, open_shared
-from costeer.runtime.wheels.interface import WheelDescription
-from costeer.runtime.wheels.registry import emergency_stop, prepare_stop
 
 PATIENCE = 0.08
 """A heartbeat older than this is none [s]: acting takes the rest of 100 ms."""

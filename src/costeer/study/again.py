@@ -6,7 +6,7 @@ import csv
 from collections.abc import Callable
 from pathlib import Path
 
-from costeer.loop.record import read_record
+from costeer.records.record import read_record
 from costeer.study.configuration import settings_of
 from costeer.study.folder import locked, read_study, record_path
 from costeer.study.material import HUMAN_DRIVER, find_records

@@ -7,9 +7,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from costeer.loop.columns import TrialRecord
-from costeer.loop.plausible import suspicions
-from costeer.loop.record import read_recording
+from costeer.records.columns import TrialRecord
+from costeer.records.plausible import suspicions
+from costeer.records.record import read_recording
 from costeer.study.definitions import DEFAULTS, Columns, Measure, MeasureParameters
 from costeer.study.measures import Row, lane_change_rows, parameters_of
 from costeer.study.recordings import (

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from costeer.loop.columns import LANE_CHANGING, MANUAL
+from costeer.records.columns import LANE_CHANGING, MANUAL
 from costeer.study.crossings import LEFT, RIGHT, Crossing, line_crossings
 from costeer.study.definitions import (
     DEFAULTS,

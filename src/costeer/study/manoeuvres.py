@@ -4,7 +4,7 @@ from math import nan, radians
 
 import numpy as np
 
-from costeer.loop.columns import LANE_CHANGING
+from costeer.records.columns import LANE_CHANGING
 from costeer.study.crossings import LEFT, excursion, within
 from costeer.study.definitions import (
     DEFAULTS,

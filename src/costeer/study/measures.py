@@ -6,7 +6,7 @@ could not be computed is NaN here; `trial_measures` says why.
 
 from math import isclose, nan
 
-from costeer.loop.columns import TrialRecord
+from costeer.records.columns import TrialRecord
 from costeer.study.definitions import DEFAULTS, MeasureParameters, incomplete
 from costeer.study.detection import Detection, detect, lead_time
 from costeer.study.inconsistencies import Inconsistency, find_inconsistencies

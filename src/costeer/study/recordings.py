@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from costeer.loop.columns import COLUMNS_BY_NAME, converted
+from costeer.records.columns import COLUMNS_BY_NAME, converted
 from costeer.study.definitions import Columns
 
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import NamedTuple
 
-from costeer.loop.record import TrialRecord, read_record, write_record
 from costeer.loop.scenario import TrialSetup
+from costeer.records.record import TrialRecord, read_record, write_record
 from costeer.study.conditions import CONDITION_NAMES
 from costeer.study.configuration import StudySettings, trial_setup
 from costeer.study.design import Trial, plan_trials

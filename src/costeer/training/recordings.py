@@ -25,9 +25,9 @@ from costeer.intention.features import (
     feature_series,
     mirrored,
 )
-from costeer.loop.columns import text_told
-from costeer.loop.plausible import suspicions
-from costeer.loop.record import TrialRecord, read_recording
+from costeer.records.columns import text_told
+from costeer.records.plausible import suspicions
+from costeer.records.record import TrialRecord, read_recording
 from costeer.training.labels import Labels, labels
 from costeer.training.tables import (
     Columns,

@@ -22,7 +22,7 @@ from costeer.intention.features import (
     WINDOW_LENGTH,
     adjacent_side,
 )
-from costeer.loop.columns import COLUMN_NAMES
+from costeer.records.columns import COLUMN_NAMES
 from costeer.training.datasets.resample import delayed, grid, held, sample_at
 from costeer.training.labels import crossings
 

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from costeer.base.array import Real
-from costeer.loop.columns import TrialRecord
+from costeer.records.columns import TrialRecord
 from costeer.study.definitions import DEFAULTS, MeasureParameters
 from costeer.study.lane_keeping import gathered, lane_departures
 from costeer.study.measures import parameters_of

@@ -1,9 +1,9 @@
 """The linear loop of driver and car about straight driving, for many drivers at once.
 
 Its matrix is made of central differences of the very functions of a control step, as
-in loop/linear.py: no second derivation can go wrong. Noise and dry friction are left
-out; the wander of the aim does not depend on the car and adds no eigenvalue to look
-at.
+in validation/linear.py: no second derivation can go wrong. Noise and dry friction are
+left out; the wander of the aim does not depend on the car and adds no eigenvalue to
+look at.
 """
 
 from __future__ import annotations

@@ -15,7 +15,6 @@ import numpy as np
 from costeer.drivers.driver import DriverParameters
 from costeer.identification.fit import DriverFit
 from costeer.intention.wavefront import initial_state as network_memory
-from costeer.loop.columns import TrialRecord
 from costeer.loop.noise import driver_noise
 from costeer.loop.rollout import Script, rollout
 from costeer.loop.scenario import (
@@ -27,6 +26,7 @@ from costeer.loop.scenario import (
 )
 from costeer.loop.step import DT
 from costeer.loop.trial import SLOWEST_SHARE, idle_weights, record_columns
+from costeer.records.columns import TrialRecord
 from costeer.study.definitions import Columns, Measure
 from costeer.study.jobs import run_jobs
 from costeer.study.segments import Segments

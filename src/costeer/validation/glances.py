@@ -13,8 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from costeer.base.array import Real
-from costeer.loop.columns import TrialRecord
 from costeer.plant.parameters import CarParameters, RoadParameters
+from costeer.records.columns import TrialRecord
 
 GLANCE_ANGLE = 0.25
 """Least head yaw of a glance [rad]."""

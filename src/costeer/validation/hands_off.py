@@ -15,11 +15,11 @@ from numpy.typing import NDArray
 from costeer.base.array import Real
 from costeer.controller import actuation
 from costeer.controller.actuation import STRONG, ActuationParameters
-from costeer.loop.columns import TrialRecord
 from costeer.loop.scenario import TrialSetup
 from costeer.loop.step import DT
 from costeer.loop.trial import simulate_trial
 from costeer.plant.parameters import CARS, RoadParameters
+from costeer.records.columns import TrialRecord
 
 SPEEDS = (50.0 / 3.6, 70.0 / 3.6, 90.0 / 3.6, 110.0 / 3.6)
 """Speeds of the figures [m/s]."""

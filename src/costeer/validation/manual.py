@@ -13,9 +13,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from costeer.base.array import Real
-from costeer.loop.columns import TrialRecord
 from costeer.loop.scenario import TrialSetup
 from costeer.loop.trial import simulate_trial
+from costeer.records.columns import TrialRecord
 from costeer.study.conditions import MANUAL
 from costeer.study.measures import lane_change_rows, trial_row
 from costeer.validation.glances import (

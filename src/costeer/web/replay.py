@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from costeer.export.markers import markers_of
-from costeer.loop.columns import COLUMN_NAMES, MODES, TrialRecord, check_time
 from costeer.plant.parameters import CARS, CarParameters, RoadParameters
+from costeer.records.columns import COLUMN_NAMES, MODES, TrialRecord, check_time
 
 NEEDED = (
     "time",

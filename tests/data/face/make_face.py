@@ -17,7 +17,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from costeer.runtime.head import face
+from costeer.devices.head import face
 
 HERE = Path(__file__).parent
 METADATA = slice(3_737_848, 3_757_224)

@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from costeer.loop.columns import TrialRecord
+from costeer.records.columns import TrialRecord
 from costeer.validation.glances import HEAD_YAW_SCALE
 from costeer.validation.people.brain4cars import BACK, OUT
 from costeer.validation.people.observe import (

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from costeer.loop.record import read_record
+from costeer.records.record import read_record
 from costeer.study.conditions import MANUAL
 from costeer.study.inconsistencies import Inconsistency, find_inconsistencies
 

@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
-from costeer.loop.record import read_record
+from costeer.records.record import read_record
 from costeer.study.conditions import MANUAL, condition
 from costeer.study.crossings import RIGHT
 from costeer.study.figures.episodes import falls, rises

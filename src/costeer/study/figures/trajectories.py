@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
-from costeer.loop.record import read_record
+from costeer.records.record import read_record
 from costeer.study.conditions import CONDITIONS, DURATIONS, MANUAL
 from costeer.study.crossings import LEFT, RIGHT
 from costeer.study.figures.exhibit import Exhibit, not_drawn

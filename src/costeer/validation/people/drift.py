@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from costeer.base.array import Real
-from costeer.loop.columns import TrialRecord
+from costeer.records.columns import TrialRecord
 from costeer.study.definitions import Flags, runs
 from costeer.study.measures import parameters_of
 from costeer.study.segments import Segments, segment

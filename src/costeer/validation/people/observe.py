@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from costeer.base.array import Real
-from costeer.loop.columns import TrialRecord
+from costeer.records.columns import TrialRecord
 from costeer.study.crossings import RIGHT
 from costeer.study.lane_keeping import lateral_speed
 from costeer.validation.glances import HEAD_YAW_SCALE, WINDOW, touching_time

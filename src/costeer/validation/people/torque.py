@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from costeer.base.array import Real
-from costeer.loop.columns import TrialRecord
+from costeer.records.columns import TrialRecord
 from costeer.study.definitions import runs
 from costeer.study.measures import parameters_of
 from costeer.study.reversals import steering_wheel_reversal_rate

@@ -1,0 +1,1 @@
+"""What a trial leaves: columns declared once, rows, files."""
