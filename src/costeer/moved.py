@@ -17,6 +17,7 @@ MOVED = {
     "costeer.loop.record": "costeer.records.record",
     "costeer.runtime.head": "costeer.devices.head",
     "costeer.runtime.wheels": "costeer.devices.wheels",
+    "costeer.study.conditions": "costeer.methods.conditions",
 }
 """Where a module, or a whole room with all that is in it, was and is."""
 

@@ -15,10 +15,11 @@ from numpy.typing import NDArray
 from costeer.drivers.driver import DriverNoise
 from costeer.intention.wavefront import initial_state
 from costeer.loop.noise import driver_noise
-from costeer.loop.rollout import INTENTION_SCRIPTED, Script, rollout
+from costeer.loop.parameters import LoopParameters
+from costeer.loop.rollout import rollout
 from costeer.loop.rows import ROW_COLUMNS
 from costeer.loop.scenario import TrialSetup, loop_parameters
-from costeer.loop.step import LoopParameters
+from costeer.loop.tick import INTENTION_SCRIPTED, Script
 from costeer.loop.trial import idle_weights
 
 SETUP = TrialSetup(

@@ -14,13 +14,14 @@ from costeer.identification.recording import drive_of
 from costeer.identification.stretches import changes, lane_keeping
 from costeer.intention.wavefront import initial_state as network_memory
 from costeer.loop.noise import driver_noise
-from costeer.loop.rollout import Script, rollout
+from costeer.loop.rollout import rollout
 from costeer.loop.scenario import (
     INTENTIONS,
     TrialSetup,
     loop_parameters,
     trial_driver,
 )
+from costeer.loop.tick import Script
 from costeer.loop.trial import idle_weights, record_columns, simulate_trial
 from costeer.records.columns import TrialRecord
 

@@ -13,7 +13,8 @@ from costeer.drivers.driver import DriverNoise, DriverParameters
 from costeer.drivers.population import hands_off, participant_driver
 from costeer.loop import step as loop
 from costeer.loop.noise import driver_noise
-from costeer.loop.step import DT, LoopParameters, LoopState, StartParameters
+from costeer.loop.parameters import DT, LoopParameters, StartParameters
+from costeer.loop.step import LoopState
 from costeer.plant import world
 from costeer.plant.parameters import CarParameters, ColumnParameters
 from costeer.plant.steering import aligning_torque

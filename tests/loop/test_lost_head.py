@@ -20,8 +20,8 @@ from costeer.intention.features import (
 from costeer.intention.gru import NetworkWeights, random_weights
 from costeer.intention.wavefront import crossing_probabilities
 from costeer.intention.weights import intention_network
-from costeer.loop.rollout import intention_sample
 from costeer.loop.scenario import TrialSetup
+from costeer.loop.tick import intention_sample
 from costeer.loop.trial import simulate_trial
 from costeer.sensing.measurement import Measurement
 from tests.drivers.samples import LEFT, RIGHT, driving

@@ -9,6 +9,7 @@ import pytest
 from numpy.typing import NDArray
 
 from costeer.base.packing import pack, packed, unpack
+from costeer.loop.parameters import DT, LoopParameters
 from costeer.loop.person import PersonInput, initial_motion
 from costeer.loop.real_wheel import WheelInput
 from costeer.loop.realtime import (
@@ -19,10 +20,9 @@ from costeer.loop.realtime import (
     person_memory,
     wheel_tick,
 )
-from costeer.loop.rollout import REQUEST_DURATION
 from costeer.loop.rows import ROW_COLUMNS
 from costeer.loop.scenario import TrialSetup, loop_parameters
-from costeer.loop.step import DT, LoopParameters
+from costeer.loop.tick import REQUEST_DURATION
 from costeer.loop.trial import simulate_trial
 
 SETUP = TrialSetup(

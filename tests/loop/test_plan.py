@@ -13,9 +13,9 @@ from costeer.base.bezier import Quintic, path_point
 from costeer.drivers.driver import DriverNoise
 from costeer.loop import step as loop
 from costeer.loop.noise import driver_noise
-from costeer.loop.rollout import scripted_probability
+from costeer.loop.parameters import DT, LoopParameters
 from costeer.loop.scenario import PILOT_SEED, TrialSetup, loop_parameters
-from costeer.loop.step import DT, LoopParameters
+from costeer.loop.tick import scripted_probability
 
 METHODS_DURATION = 5.0
 WHO = (1, pytest.param(2, marks=pytest.mark.slow))

@@ -10,17 +10,9 @@ import pytest
 from costeer.drivers.decision import CHANGING, PREPARING
 from costeer.drivers.driver import DriverNoise, DriverParameters
 from costeer.drivers.population import hands_off
-from costeer.loop.rollout import REQUEST_DURATION, requested, scripted_probability
-from costeer.loop.step import (
-    DT,
-    LoopParameters,
-    LoopState,
-    StartParameters,
-    initial_state,
-    planned_to_cross,
-    sense,
-    step,
-)
+from costeer.loop.parameters import DT, LoopParameters, StartParameters
+from costeer.loop.step import LoopState, initial_state, planned_to_cross, sense, step
+from costeer.loop.tick import REQUEST_DURATION, requested, scripted_probability
 from costeer.plant.parameters import ColumnParameters
 
 QUIET = DriverNoise(*([0.0] * len(DriverNoise._fields)))._replace(

@@ -7,7 +7,7 @@ import math
 import pytest
 
 from costeer.base.packing import packed
-from costeer.loop.step import LoopParameters
+from costeer.loop.parameters import LoopParameters
 from costeer.runtime.tunables import (
     TUNABLES,
     Tunable,

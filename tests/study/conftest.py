@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from costeer.study.conditions import CONDITION_NAMES
+from costeer.methods.conditions import CONDITION_NAMES
 from costeer.study.configuration import StudySettings
 from costeer.study.material import StudyMaterial, read_material
 from costeer.study.run import run_study

@@ -7,7 +7,7 @@ from collections import Counter
 
 import pytest
 
-from costeer.study.conditions import CONDITION_NAMES
+from costeer.methods.conditions import CONDITION_NAMES
 from costeer.study.design import (
     condition_order,
     plan_trials,

@@ -14,7 +14,7 @@ from matplotlib.colors import to_rgb
 from matplotlib.text import Text
 from matplotlib.ticker import FixedFormatter, FuncFormatter
 
-from costeer.study.conditions import CONDITION_NAMES
+from costeer.methods.conditions import CONDITION_NAMES
 from costeer.study.figures import bars, detection, signals, trajectories, workload
 from costeer.study.figures.catalogue import FIGURE_NAMES, draw_figures
 from costeer.study.figures.exhibit import Exhibit

@@ -6,7 +6,7 @@ import math
 
 import pytest
 
-from costeer.study.conditions import CONDITION_NAMES
+from costeer.methods.conditions import CONDITION_NAMES
 from costeer.study.material import StudyMaterial, pair
 from costeer.study.outcome import PUBLISHED, WITHIN, PairRow, StudyTests
 from costeer.study.quantities import QUANTITIES, Quantity

@@ -6,7 +6,7 @@ import math
 
 import pytest
 
-from costeer.study.conditions import CONDITION_NAMES
+from costeer.methods.conditions import CONDITION_NAMES
 from costeer.study.material import StudyMaterial
 from costeer.study.reporting import overview
 from costeer.study.reporting.overview import planned_changes, tallies, total

@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy import stats
 
-from costeer.study.conditions import CONDITION_NAMES
+from costeer.methods.conditions import CONDITION_NAMES
 from costeer.study.outcome import EffectRow, PairRow, StudyTests
 from costeer.study.statistics import MEASURES, study_tests
 from tests.study.made_up_study import Columns, made_up_study, without

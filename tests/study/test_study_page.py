@@ -9,8 +9,8 @@ from pathlib import Path
 import pytest
 
 from costeer.cli import main
+from costeer.methods.conditions import CONDITIONS, Condition
 from costeer.records.record import read_record
-from costeer.study.conditions import CONDITIONS, Condition
 
 PAGE = (Path(__file__).parents[2] / "docs" / "study.md").read_text(encoding="utf-8")
 

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pandas as pd
 
-from costeer.study.conditions import CONDITION_NAMES
+from costeer.methods.conditions import CONDITION_NAMES
 from costeer.study.material import StudyMaterial, read_material
 from costeer.study.reporting.event_tables import detection_table
 from costeer.study.reporting.sections import page_sections

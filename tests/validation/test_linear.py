@@ -12,10 +12,11 @@ from scipy.linalg import expm
 
 from costeer.intention.wavefront import initial_state
 from costeer.loop.noise import driver_noise
-from costeer.loop.rollout import INTENTION_OFF, Script, rollout
+from costeer.loop.parameters import DT, LoopParameters
+from costeer.loop.rollout import rollout
 from costeer.loop.rows import ROW_COLUMNS
 from costeer.loop.scenario import TrialSetup, loop_parameters
-from costeer.loop.step import DT, LoopParameters
+from costeer.loop.tick import INTENTION_OFF, Script
 from costeer.loop.trial import idle_weights
 from costeer.plant.parameters import CARS, CarParameters
 from costeer.validation.linear import (

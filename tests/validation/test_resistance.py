@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from costeer.loop.parameters import DT
 from costeer.loop.scenario import PILOT_SEED, TrialSetup
-from costeer.loop.step import DT
 from costeer.loop.trial import simulate_trial
 from costeer.validation.resistance import (
     QUANTITIES,

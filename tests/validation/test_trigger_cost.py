@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from costeer.loop.scenario import PILOT_SEED
-from costeer.study.conditions import CONDITION_NAMES
+from costeer.methods.conditions import CONDITION_NAMES
 from costeer.study.configuration import PUBLISHED_STUDY
 from costeer.study.trigger_costs import COST_COLUMNS
 from costeer.validation.trigger_cost import (

@@ -18,6 +18,8 @@ import numpy as np
 from numba import types
 from numba.extending import overload, register_jitable
 
+import costeer.base.replace  # noqa: F401  teaches compiled code `_replace`
+
 Real: TypeAlias = float
 """A float, an array of them or a traced value: annotations show the scalar."""
 
@@ -37,6 +39,14 @@ def compiled(function: Function) -> Function:
     it is written; Numba compiles it into whatever calls it.
     """
     return register_jitable(function)
+
+
+def inlined(function: Function) -> Function:
+    """Like `compiled`, for a function that hands large records on: no call is left.
+
+    What LLVM does not inline by itself copies every tuple through memory.
+    """
+    return register_jitable(forceinline=True)(function)
 
 
 def _numpy_like(value: Any) -> Any:  # Any: this is where engines meet

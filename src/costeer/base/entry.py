@@ -12,12 +12,16 @@ import hashlib
 import os
 import shutil
 import tempfile
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from functools import cache
 from pathlib import Path
 from typing import Any, TypeVar, cast
 
 import numba
+from numba.core.caching import FunctionCache
+
+from costeer.base.plugins import is_interactive
+from costeer.base.plugins import source_hash as plugin_hash
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 _KEPT_FOLDERS = 3
@@ -67,6 +71,41 @@ def _forget_old(root: Path, current: Path) -> None:
     others.sort(key=lambda folder: folder.stat().st_mtime, reverse=True)
     for folder in others[_KEPT_FOLDERS - 1 :]:
         shutil.rmtree(folder, ignore_errors=True)
+
+
+def entry_for(parts: Iterable[Callable[..., Any]], function: Function) -> Function:
+    """Compile a function that closes over functions of a plug-in.
+
+    Its machine code lies in a folder of the plug-in's own, which bears a hash of all
+    its sources. What was written in a notebook is compiled anew in each process.
+
+    Args:
+        parts: Functions of the plug-in.
+        function: Calls them; its closure holds them.
+    """
+    parts = tuple(parts)
+    # Any: Numba does not tell of its dispatchers' cache.
+    dispatcher: Any = numba.njit(nogil=True, error_model="numpy")(function)
+    if is_interactive(parts):
+        return cast("Function", dispatcher)
+    before = _settings.CACHE_DIR
+    _settings.CACHE_DIR = str(cache_folder() / plugin_hash(parts))
+    try:
+        dispatcher._cache = cast("Any", _ClosureCache)(function)
+    finally:
+        _settings.CACHE_DIR = before
+    return cast("Function", dispatcher)
+
+
+class _ClosureCache(FunctionCache):
+    """Numba's cache, keyed without what the closure holds: the folder's name says it.
+
+    Numba's own key would pickle the functions in the closure and never be found again.
+    """
+
+    def _index_key(self, sig: Any, codegen: Any) -> Any:
+        code = self._py_func.__code__
+        return sig, codegen.magic_tuple(), hashlib.sha256(code.co_code).hexdigest()
 
 
 def entry(function: Function) -> Function:

@@ -12,9 +12,10 @@ from costeer.bench.timing import Effort, Outcome, Skipped, figure, seconds_of
 from costeer.intention.wavefront import initial_state
 from costeer.loop.jax_rollout import jax_rollouts
 from costeer.loop.noise import driver_noise
-from costeer.loop.rollout import INTENTION_SCRIPTED, Script, rollout
+from costeer.loop.parameters import DT
+from costeer.loop.rollout import rollout
 from costeer.loop.scenario import TrialSetup, loop_parameters
-from costeer.loop.step import DT
+from costeer.loop.tick import INTENTION_SCRIPTED, Script
 from costeer.loop.trial import (
     idle_weights,
     shipped_network,

@@ -64,8 +64,8 @@ def simulate(
         costeer simulate --out out/a.parquet --driver hands-off --trigger-at 20
     """
     from costeer.loop.scenario import TrialSetup
-    from costeer.study.conditions import MANUAL
-    from costeer.study.conditions import condition as condition_named
+    from costeer.methods.conditions import MANUAL
+    from costeer.methods.conditions import condition as condition_named
 
     chosen = condition_named(condition)
     setup = TrialSetup(

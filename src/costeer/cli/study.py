@@ -63,7 +63,7 @@ def study(
         costeer study --out out/study
         costeer study --out out/quick --participants 2 --length 2000 --no-report
     """
-    from costeer.study.conditions import parse_conditions
+    from costeer.methods.conditions import parse_conditions
     from costeer.study.configuration import StudySettings, check_settings
 
     settings = check_settings(

@@ -134,11 +134,6 @@ def step(
         state.locked
     )
     num_positive = xp.select(positive, state.num_positive + 1.0, 0.0)
-    new_state = InferenceState(
-        num_positive=num_positive,
-        locked=state.locked,
-        time_locked=state.time_locked,
-        time_settled=state.time_settled,
-    )
+    new_state = state._replace(num_positive=num_positive)
     detected = num_positive >= parameters.trigger_samples
     return new_state, Intention(detected=detected, side=measurement.side)

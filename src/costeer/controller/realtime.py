@@ -7,16 +7,15 @@ Nothing here looks at a clock. The network's verdict comes in from outside.
 
 from __future__ import annotations
 
-import math
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from costeer.base.array import Flag, Real
+from costeer.base.array import Real
 from costeer.base.entry import entry
 from costeer.base.packing import leaf_names, pack, packed, packed_size, unpack
-from costeer.controller.signals import Signals
+from costeer.controller.signals import Assistance, Request
 from costeer.controller.step import ControllerParameters, initial_state, step
 from costeer.sensing.measurement import Measurement
 
@@ -26,13 +25,11 @@ class ControlInput(NamedTuple):
 
     Attributes:
         measurement: This step's sample.
-        crossing_probability: Of the intention network; NaN for no verdict [-].
-        requested: A lane change asked for from outside.
+        request: Verdict of the predictor and what is asked for from outside.
     """
 
     measurement: Measurement
-    crossing_probability: Real
-    requested: Flag
+    request: Request
 
 
 class PackedController(NamedTuple):
@@ -42,7 +39,7 @@ class PackedController(NamedTuple):
         parameters: Packed, shape `(parameter,)`.
         state: Packed, changed in place, shape `(state,)`.
         given: Room for a packed `ControlInput`, shape `(input,)`.
-        signals: Room for packed `Signals`, shape `(signal,)`.
+        signals: Room for a packed `Assistance`, shape `(signal,)`.
     """
 
     parameters: NDArray[np.float64]
@@ -54,13 +51,12 @@ class PackedController(NamedTuple):
 _PARAMETERS = ControllerParameters()
 _ZEROS: dict[str, Any] = dict.fromkeys(Measurement._fields, 0.0)  # Any: one is a flag
 _NOTHING_MEASURED = Measurement(**(_ZEROS | {"head_yaw_valid": False}))
-_INPUT = ControlInput(_NOTHING_MEASURED, math.nan, False)
+_INPUT = ControlInput(_NOTHING_MEASURED, Request())
 _, _SIGNALS = step(
     _PARAMETERS,
-    initial_state(_PARAMETERS.road, 0.0),
+    initial_state(_PARAMETERS, 0.0),
     _NOTHING_MEASURED,
-    math.nan,
-    False,
+    Request(),
     1.0,
 )
 
@@ -75,13 +71,13 @@ def packed_controller(parameters: ControllerParameters, lane: Real) -> PackedCon
     """Memory of a controller that starts by keeping `lane`."""
     return PackedController(
         parameters=packed(parameters),
-        state=packed(initial_state(parameters.road, lane)),
+        state=packed(initial_state(parameters, lane)),
         given=packed(_INPUT),
         signals=np.zeros(packed_size(_SIGNALS)),
     )
 
 
-def unpacked_signals(signals: NDArray[np.float64]) -> Signals:
+def unpacked_signals(signals: NDArray[np.float64]) -> Assistance:
     """The signals of a step as the named tuple that Python code reads."""
     return unpack(_SIGNALS, signals)
 
@@ -104,14 +100,13 @@ def control_step(
         dt: Control step [s].
     """
     chosen = unpack(_PARAMETERS, parameters)
-    like = initial_state(chosen.road, 0.0)
+    like = initial_state(chosen, 0.0)
     measured = unpack(_INPUT, given)
     new_state, computed = step(
         chosen,
         unpack(like, state),
         measured.measurement,
-        measured.crossing_probability,
-        measured.requested,
+        measured.request,
         dt,
     )
     pack(state, new_state)

@@ -1,7 +1,11 @@
-"""The record that each stage of the controller hands on to the next."""
+"""What comes into a method, what each stage hands on to the next, what comes out.
+
+Numbers that a method does not compute are NaN without its saying so.
+"""
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 from costeer.base.array import Flag, Real
@@ -12,6 +16,24 @@ LANE_KEEPING = 1.0
 
 LANE_CHANGING = 2.0
 """Mode: guidance along a path to the adjacent lane."""
+
+NO_PATH = Quintic(*[math.nan] * len(Quintic._fields))
+"""Where nothing is planned."""
+
+
+class Request(NamedTuple):
+    """What is asked of a method at one step, by predictor, person or script.
+
+    Attributes:
+        crossing_probability: That the car crosses into the lane on
+            `Measurement.side` soon; NaN for no verdict [-].
+        requested: A lane change asked for from outside: indicator or script.
+        change_duration: That a lane change is to take; NaN: the method's own [s].
+    """
+
+    crossing_probability: Real = math.nan
+    requested: Flag = False
+    change_duration: Real = math.nan
 
 
 class Intention(NamedTuple):
@@ -39,13 +61,13 @@ class Target(NamedTuple):
         path: Of the last lane change; means nothing in lane keeping.
     """
 
-    mode: Real
-    lane: Real
-    lateral_position: Real
-    heading: Real
-    curvature: Real
-    curvature_rate: Real
-    path: Quintic
+    mode: Real = LANE_KEEPING
+    lane: Real = math.nan
+    lateral_position: Real = math.nan
+    heading: Real = math.nan
+    curvature: Real = math.nan
+    curvature_rate: Real = math.nan
+    path: Quintic = NO_PATH
 
 
 class Preview(NamedTuple):
@@ -62,14 +84,14 @@ class Preview(NamedTuple):
         planned_slip_angle: alpha_d [rad].
     """
 
-    lateral_error: Real
-    heading_error: Real
-    heading_error_rate: Real
-    steering_angle_error: Real
-    slip_angle_error: Real
-    planned_steering_angle: Real
-    planned_steering_rate: Real
-    planned_slip_angle: Real
+    lateral_error: Real = math.nan
+    heading_error: Real = math.nan
+    heading_error_rate: Real = math.nan
+    steering_angle_error: Real = math.nan
+    slip_angle_error: Real = math.nan
+    planned_steering_angle: Real = math.nan
+    planned_steering_rate: Real = math.nan
+    planned_slip_angle: Real = math.nan
 
 
 class Guidance(NamedTuple):
@@ -81,9 +103,9 @@ class Guidance(NamedTuple):
         instructed_torque: tau_hapi, Eq. (4) [N·m].
     """
 
-    estimated_driver_torque: Real
-    disturbance_torque: Real
-    instructed_torque: Real
+    estimated_driver_torque: Real = math.nan
+    disturbance_torque: Real = math.nan
+    instructed_torque: Real = math.nan
 
 
 class Consistency(NamedTuple):
@@ -96,33 +118,31 @@ class Consistency(NamedTuple):
         consistent: The verdict of Table III.
     """
 
-    guidance_pseudo_work: Real
-    driver_pseudo_work: Real
-    torque_agreement: Real
-    consistent: Flag
+    guidance_pseudo_work: Real = math.nan
+    driver_pseudo_work: Real = math.nan
+    torque_agreement: Real = math.nan
+    consistent: Flag = True
 
 
-class Signals(NamedTuple):
-    """All that one step of the controller computed.
+class Assistance(NamedTuple):
+    """All that a method computed at one step; only the torque has an effect.
 
     Attributes:
-        crossing_probability: Of the intention network [-].
-        intention: Its debounced trigger.
+        applied_torque: tau_hapa, asked of the motor [N·m].
+        haptic_gain: K_h [-].
+        intention: The debounced trigger of a lane change.
         target: Mode and planned motion.
         preview: Errors and planned wheel.
         guidance: Torques before the gain.
         consistency: Pseudo-work, agreement, verdict.
-        haptic_gain: K_h [-].
         replan: Whether a new plan was called for at this step.
-        applied_torque: tau_hapa, asked of the motor [N·m].
     """
 
-    crossing_probability: Real
-    intention: Flag
-    target: Target
-    preview: Preview
-    guidance: Guidance
-    consistency: Consistency
-    haptic_gain: Real
-    replan: Flag
-    applied_torque: Real
+    applied_torque: Real = 0.0
+    haptic_gain: Real = math.nan
+    intention: Flag = False
+    target: Target = Target()
+    preview: Preview = Preview()
+    guidance: Guidance = Guidance()
+    consistency: Consistency = Consistency()
+    replan: Flag = False

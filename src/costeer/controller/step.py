@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+from costeer.base import array as xp
 from costeer.base.array import Flag, Real, compiled
 from costeer.controller import (
     actuation,
@@ -22,10 +23,11 @@ from costeer.controller.inference import InferenceParameters, InferenceState
 from costeer.controller.preview import PreviewParameters
 from costeer.controller.replanning import ReplanningParameters
 from costeer.controller.signals import (
+    Assistance,
     Guidance,
     Intention,
     Preview,
-    Signals,
+    Request,
     Target,
 )
 from costeer.controller.strength import StrengthParameters, StrengthState
@@ -85,11 +87,11 @@ class ControllerState(NamedTuple):
 
 
 @compiled
-def initial_state(road: RoadParameters, lane: Real) -> ControllerState:
+def initial_state(parameters: ControllerParameters, lane: Real) -> ControllerState:
     """Lane keeping in `lane`, full gain, consistent."""
     return ControllerState(
         inference=inference.initial_state(),
-        trajectory=trajectory.initial_state(road, lane),
+        trajectory=trajectory.initial_state(parameters.road, lane),
         consistency=consistency.initial_state(),
         strength=strength.initial_state(),
         actuation=actuation.initial_state(),
@@ -102,32 +104,33 @@ def plan(
     parameters: ControllerParameters,
     state: ControllerState,
     measurement: Measurement,
-    crossing_probability: Real,
-    requested: Flag,
+    request: Request,
     dt: Real,
 ) -> tuple[InferenceState, Intention, TrajectoryState, Target]:
     """Infer the intention, choose mode and path.
 
-    Args:
-        parameters: Of all stages.
-        state: Of all stages.
-        measurement: This step's sample.
-        crossing_probability: Of the intention network; NaN for no verdict [-].
-        requested: A lane change asked for from outside counts as an intention.
-        dt: Control step [s].
+    A lane change that is asked for counts as an intention.
     """
+    own = parameters.trajectory
+    duration = xp.select(
+        xp.isfinite(request.change_duration),
+        request.change_duration,
+        own.change_duration,
+    )
     inference_state, inferred = inference.step(
         parameters.inference,
         state.inference,
         parameters.road,
         measurement,
-        crossing_probability,
+        request.crossing_probability,
         state.trajectory.path_ended,
         dt,
     )
-    intention = Intention(detected=inferred.detected | requested, side=inferred.side)
+    intention = Intention(
+        detected=inferred.detected | request.requested, side=inferred.side
+    )
     trajectory_state, target = trajectory.step(
-        parameters.trajectory,
+        own._replace(change_duration=duration),
         state.trajectory,
         parameters.road,
         measurement,
@@ -155,22 +158,20 @@ def step(
     parameters: ControllerParameters,
     state: ControllerState,
     measurement: Measurement,
-    crossing_probability: Real,
-    requested: Flag,
+    request: Request,
     dt: Real,
-) -> tuple[ControllerState, Signals]:
+) -> tuple[ControllerState, Assistance]:
     """Run all stages once; return the state and everything they computed.
 
     Args:
         parameters: Of all stages.
         state: Of all stages.
         measurement: This step's sample.
-        crossing_probability: Of the intention network; NaN for no verdict [-].
-        requested: A lane change asked for from outside counts as an intention.
+        request: Verdict of the predictor and what is asked for from outside.
         dt: Control step [s].
     """
     inference_state, intention, trajectory_state, target = plan(
-        parameters, state, measurement, crossing_probability, requested, dt
+        parameters, state, measurement, request, dt
     )
     errors, torques = instruct(parameters, target, measurement)
     consistency_state, verdict = consistency.step(
@@ -197,14 +198,13 @@ def step(
         actuation=actuation_state,
         replan=replan,
     )
-    return new_state, Signals(
-        crossing_probability=crossing_probability,
+    return new_state, Assistance(
+        applied_torque=torque,
+        haptic_gain=gain,
         intention=intention.detected,
         target=target,
         preview=errors,
         guidance=torques,
         consistency=verdict,
-        haptic_gain=gain,
         replan=replan,
-        applied_torque=torque,
     )

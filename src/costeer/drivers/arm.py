@@ -195,13 +195,9 @@ def held_column(
         column: By itself.
         stiffening: Co-contraction, factor on the stiffness [-].
     """
-    return ColumnParameters(
+    return column._replace(
         inertia=column.inertia + parameters.hands_on * parameters.inertia,
         damping=column.damping + arm_damping(parameters, stiffening),
-        stiffness=column.stiffness,
-        friction=column.friction,
-        motor_lag=column.motor_lag,
-        torque_limit=column.torque_limit,
     )
 
 

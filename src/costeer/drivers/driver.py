@@ -225,11 +225,7 @@ def aim(
         cruising_lane(road) + away,
         decided.change_duration,
     )
-    return TrackingState(
-        path=xp.select(decided.started, path, wandered.path),
-        wander=wandered.wander,
-        wander_rate=wandered.wander_rate,
-    )
+    return wandered._replace(path=xp.select(decided.started, path, wandered.path))
 
 
 @compiled

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from costeer.identification.drive import Drive, Signal
-from costeer.loop.step import DT
+from costeer.loop.parameters import DT
 from costeer.plant.parameters import CARS, ColumnParameters, RoadParameters
 from costeer.plant.road import lane_at, lane_centre
 from costeer.records.columns import COLUMNS_BY_NAME, TrialRecord, check_time, converted

@@ -108,12 +108,9 @@ def facing(sample: IntentionSample, adjacent_side: Real) -> IntentionSample:
         adjacent_side: -1 right, +1 left.
     """
     turn = -1.0 * adjacent_side
-    return IntentionSample(
+    return sample._replace(
         head_yaw=turn * sample.head_yaw,
-        longitudinal_acceleration=sample.longitudinal_acceleration,
-        longitudinal_velocity=sample.longitudinal_velocity,
         steering_wheel_angle=turn * sample.steering_wheel_angle,
-        distance_to_adjacent_lane=sample.distance_to_adjacent_lane,
         yaw_angle=turn * sample.yaw_angle,
     )
 

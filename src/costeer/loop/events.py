@@ -6,7 +6,6 @@ from typing import NamedTuple
 
 from costeer.base import array as xp
 from costeer.base.array import Flag, Real, compiled
-from costeer.drivers.decision import CRUISING
 from costeer.plant.parameters import RoadParameters
 from costeer.plant.road import cruising_lane
 from costeer.plant.traffic import (
@@ -40,7 +39,7 @@ def initial_events() -> EventState:
 
 @compiled
 def event_zone(
-    traffic: TrafficParameters, state: EventState, position: Real, phase: Real
+    traffic: TrafficParameters, state: EventState, position: Real, at_home: Flag
 ) -> Real:
     """Number of the event whose zone the car is in, 0 outside [-].
 
@@ -51,11 +50,11 @@ def event_zone(
         traffic: Zone distance.
         state: Leader and zone before.
         position: Of the car along the road [m].
-        phase: Of the driver's decision [-].
+        at_home: Whether the driver is back in the cruising lane.
     """
     gap = state.leader.longitudinal_position - position
     near = state.leader.present & (gap > 0.0) & (gap <= traffic.zone_distance)
-    over = (phase == CRUISING) & xp.logical_not(state.leader.present & (gap > 0.0))
+    over = at_home & xp.logical_not(state.leader.present & (gap > 0.0))
     inside = xp.select(near, state.leader.num_appeared, state.event)
     return xp.select(over, 0.0, inside)
 
@@ -66,7 +65,7 @@ def step_events(
     road: RoadParameters,
     state: EventState,
     measurement: Measurement,
-    phase: Real,
+    at_home: Flag,
     leader_uniform: Real,
     dt: Real,
 ) -> EventState:
@@ -80,14 +79,15 @@ def step_events(
         road: Lanes.
         state: Leader and zone.
         measurement: Of the car.
-        phase: Of the driver's decision [-].
+        at_home: Whether the driver is back in the cruising lane: of a virtual one the
+            decision says so, a person's car has settled there.
         leader_uniform: A draw in [0, 1) for the leader's speed; negative: no leader.
         dt: Control step [s].
     """
     position = measurement.longitudinal_position
-    event = event_zone(traffic, state, position, phase)
+    event = event_zone(traffic, state, position, at_home)
     cruising = cruising_lane(road)
-    ready = (event == 0.0) & (phase == CRUISING) & (measurement.lane == cruising)
+    ready = (event == 0.0) & at_home & (measurement.lane == cruising)
     appears = ready & due(traffic, state.leader, position) & (leader_uniform >= 0.0)
     new = appear(
         traffic,

@@ -17,13 +17,16 @@ from numpy.typing import NDArray
 
 from costeer.base.array import Real
 from costeer.drivers.driver import DriverNoise
-from costeer.loop.rollout import INTENTION_NETWORK, Script, tick
-from costeer.loop.step import LoopParameters, LoopState, initial_state
+from costeer.loop.parameters import LoopParameters
+from costeer.loop.step import LoopState, initial_state
+from costeer.loop.tick import INTENTION_NETWORK, Script, tick
+from costeer.methods.interface import Method, P, Rule, S, rule_of
 
 
 class Fixed(NamedTuple):
     """What the compiler must know of a trial: a new value is a new compilation."""
 
+    rule: Rule[Any, Any]  # Any: of any method
     plant_steps: int
     intention: int
 
@@ -54,7 +57,7 @@ def float64() -> Any:  # Any: a context manager of JAX's own
 
 
 def trace(
-    parameters: LoopParameters,
+    parameters: LoopParameters[Any],
     horizon: Real,
     trigger_times: Any,  # Any: a traced array
     noise: Any,  # Any: a traced array
@@ -78,15 +81,17 @@ def trace(
     script = Script(fixed.intention, horizon, trigger_times)
     no_network: Any = None
 
-    def advance(state: LoopState, draws: Any) -> tuple[LoopState, Any]:
+    def advance(state: LoopState[Any], draws: Any) -> tuple[LoopState[Any], Any]:
         drawn = DriverNoise(*draws)
-        moved, row = tick(parameters, state, script, no_network, no_network, drawn)
+        moved, row = tick(
+            fixed.rule, parameters, state, script, no_network, no_network, drawn
+        )
         numbers = [jax.numpy.asarray(n, float) for n in jax.tree_util.tree_leaves(row)]
         new_state = jax.tree_util.tree_map(_as_before, state, moved)
         position = new_state.world.vehicle.longitudinal_position
         return new_state, (position, jax.numpy.stack(numbers))
 
-    start = jax.tree_util.tree_map(_of_one_type, initial_state(parameters))
+    start = jax.tree_util.tree_map(_of_one_type, initial_state(fixed.rule, parameters))
     _, (positions, rows) = jax.lax.scan(advance, start, noise)
     return positions, rows
 
@@ -120,7 +125,9 @@ def _many_trials() -> Any:  # Any: as above
     return jax.jit(together, static_argnames="fixed")
 
 
-def _fixed(parameters: LoopParameters, script: Script) -> Fixed:
+def _fixed(
+    method: Method[P, S], parameters: LoopParameters[P], script: Script
+) -> Fixed:
     """What the compiler must know.
 
     Raises:
@@ -131,7 +138,7 @@ def _fixed(parameters: LoopParameters, script: Script) -> Fixed:
             "engine 'jax' does not run the intention network; give the intention as "
             "scripted or off, or choose the engine numba or python"
         )
-    return Fixed(plant_steps=parameters.plant_steps, intention=script.intention)
+    return Fixed(rule_of(method), parameters.plant_steps, script.intention)
 
 
 def _until_the_end(
@@ -143,11 +150,15 @@ def _until_the_end(
 
 
 def jax_rollout(
-    parameters: LoopParameters, script: Script, noise: NDArray[np.float64]
+    method: Method[P, S],
+    parameters: LoopParameters[P],
+    script: Script,
+    noise: NDArray[np.float64],
 ) -> NDArray[np.float64]:
     """Run one trial.
 
     Args:
+        method: That assists.
         parameters: Of the trial.
         script: Where the crossing probability comes from; not the network.
         noise: Random numbers, shape `(time, draw)`.
@@ -159,7 +170,7 @@ def jax_rollout(
         ValueError: If the intention network is asked for.
         ModuleNotFoundError: If JAX is not installed.
     """
-    fixed = _fixed(parameters, script)
+    fixed = _fixed(method, parameters, script)
     with float64():
         positions, rows = _one_trial()(
             parameters, script.horizon, script.trigger_times, noise, fixed=fixed
@@ -169,11 +180,15 @@ def jax_rollout(
 
 
 def jax_rollouts(
-    parameters: Sequence[LoopParameters], script: Script, noise: NDArray[np.float64]
+    method: Method[P, S],
+    parameters: Sequence[LoopParameters[P]],
+    script: Script,
+    noise: NDArray[np.float64],
 ) -> list[NDArray[np.float64]]:
     """Run many trials together, one per driver; they share plant steps and script.
 
     Args:
+        method: That assists in all of them.
         parameters: Of each trial.
         script: Where the crossing probability comes from; not the network.
         noise: Random numbers, shape `(trial, time, draw)`.
@@ -185,7 +200,7 @@ def jax_rollouts(
         ValueError: If the trials differ in plant steps, or the network is asked for.
         ModuleNotFoundError: If JAX is not installed.
     """
-    fixed = _fixed(parameters[0], script)
+    fixed = _fixed(method, parameters[0], script)
     steps = {one.plant_steps for one in parameters}
     if len(steps) > 1:
         raise ValueError(

@@ -10,37 +10,33 @@ delays are the same: a torque computed from a sample acts one control step later
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple, TypeVar
 
 from costeer.base import array as xp
-from costeer.base.array import Flag, Real, compiled
+from costeer.base.array import Flag, Real, compiled, inlined
 from costeer.controller import inference
-from costeer.controller import step as controller
-from costeer.controller.signals import Signals
-from costeer.controller.step import ControllerState
+from costeer.controller.inference import InferenceParameters
+from costeer.controller.signals import Request
 from costeer.drivers import arm
 from costeer.drivers.arm import ArmCommand, ArmParameters
-from costeer.drivers.decision import CHANGING, CRUISING
 from costeer.drivers.driver import Action
 from costeer.drivers.longitudinal import Pedals
-from costeer.loop.events import EventState, initial_events, step_events
-from costeer.loop.step import (
-    DT,
-    LoopParameters,
-    PlantHeld,
-    PlantMotion,
-    Sample,
-    plant_step,
-)
+from costeer.loop.half_step import ControlState, Sample, Seat, half_step
+from costeer.loop.parameters import DT, LoopParameters
+from costeer.loop.step import PlantHeld, PlantMotion, plant_step
+from costeer.methods.interface import Rule
 from costeer.plant import world
-from costeer.plant.parameters import holding_stiffness
+from costeer.plant.parameters import RoadParameters, holding_stiffness
 from costeer.plant.road import cruising_lane, lane_centre
 from costeer.plant.steering import ColumnState
-from costeer.plant.vehicle import (
-    drive_command,
-)
+from costeer.plant.vehicle import drive_command
 from costeer.sensing.measurement import Measurement
 from costeer.sensing.sensors import HeadTracker, measure
+
+S = TypeVar("S")
+
+_SETTLED = InferenceParameters()
+"""When a car has settled after a lane change, whatever the method."""
 
 
 class PersonInput(NamedTuple):
@@ -67,22 +63,6 @@ class PersonInput(NamedTuple):
     crossing_probability: Real
     requested: Flag
     leader_uniform: Real
-
-
-class PersonState(NamedTuple):
-    """What the control steps remember.
-
-    Attributes:
-        controller: Of the method.
-        events: Leader and event zone.
-        torque_command: Computed at the step before, acts in this one [N·m].
-        time: Since the trial began [s].
-    """
-
-    controller: ControllerState
-    events: EventState
-    torque_command: Real
-    time: Real
 
 
 class PersonMotion(NamedTuple):
@@ -115,19 +95,7 @@ class PersonHeld(NamedTuple):
 
 
 @compiled
-def initial_state(parameters: LoopParameters) -> PersonState:
-    """Lane keeping in the cruising lane, an empty road."""
-    lane = cruising_lane(parameters.road)
-    return PersonState(
-        controller=controller.initial_state(parameters.road, lane),
-        events=initial_events(),
-        torque_command=0.0,
-        time=0.0,
-    )
-
-
-@compiled
-def initial_motion(parameters: LoopParameters) -> PersonMotion:
+def initial_motion(parameters: LoopParameters[Any]) -> PersonMotion:
     """The car in the cruising lane at the start's speed, wheel straight ahead."""
     centre = lane_centre(parameters.road, cruising_lane(parameters.road))
     offset = parameters.start.lateral_offset
@@ -138,7 +106,7 @@ def initial_motion(parameters: LoopParameters) -> PersonMotion:
 
 @compiled
 def driver_torque(
-    parameters: LoopParameters, motion: PersonMotion, has_wheel: Flag
+    parameters: LoopParameters[Any], motion: PersonMotion, has_wheel: Flag
 ) -> Real:
     """Mean torque of the driver over the last control step [N·m].
 
@@ -158,22 +126,19 @@ def driver_torque(
 
 
 @compiled
-def phase(parameters: LoopParameters, measurement: Measurement) -> Real:
-    """`CRUISING` while the car runs straight in the cruising lane, else `CHANGING`.
+def at_home(road: RoadParameters, measurement: Measurement) -> Flag:
+    """Whether the car runs straight in the cruising lane.
 
     Of a person nobody knows the decision; the event zone ends when the car has
     returned and settled.
     """
-    settled = inference.settled(
-        parameters.controller.inference, parameters.road, measurement
-    )
-    home = measurement.lane == cruising_lane(parameters.road)
-    return xp.select(home & settled, CRUISING, CHANGING)
+    is_settled = inference.settled(_SETTLED, road, measurement)
+    return is_settled & (measurement.lane == cruising_lane(road))
 
 
 @compiled
 def sense(
-    parameters: LoopParameters,
+    parameters: LoopParameters[Any],
     motion: PersonMotion,
     given: PersonInput,
     has_wheel: Flag,
@@ -189,14 +154,13 @@ def sense(
 
 
 @compiled
-def _sample(
-    state: PersonState,
+def seated(
+    parameters: LoopParameters[Any],
     motion: PersonMotion,
-    measurement: Measurement,
-    signals: Signals,
     given: PersonInput,
-) -> Sample:
-    """All of this step; nobody knows what a person intends."""
+    measurement: Measurement,
+) -> Seat:
+    """The person's seat; nobody knows what a person intends."""
     command = ArmCommand(
         intended_angle=given.intended_angle,
         holding_stiffness=0.0,
@@ -204,33 +168,32 @@ def _sample(
         guidance=0.0,
         reliance=0.0,
     )
-    action = Action(
-        arm=command,
-        pedals=Pedals(accelerator=given.accelerator, brake=given.brake),
-        head_yaw=given.head_yaw,
-        intention=math.nan,
-    )
-    return Sample(
-        time=state.time,
-        measurement=measurement,
-        signals=signals,
+    return Seat(
+        action=Action(
+            arm=command,
+            pedals=Pedals(accelerator=given.accelerator, brake=given.brake),
+            head_yaw=given.head_yaw,
+            intention=math.nan,
+        ),
+        at_home=at_home(parameters.road, measurement),
+        leader_uniform=given.leader_uniform,
         motor_torque=motion.plant.world.column.motor_torque,
-        action=action,
-        events=state.events,
     )
 
 
-@compiled
+@inlined
 def control(
-    parameters: LoopParameters,
-    state: PersonState,
+    rule: Rule[Any, S],
+    parameters: LoopParameters[Any],
+    state: ControlState[S],
     motion: PersonMotion,
     given: PersonInput,
     has_wheel: Flag,
-) -> tuple[PersonState, PersonHeld, Sample]:
-    """One control step: sense, run the method, move the leader on.
+) -> tuple[ControlState[S], PersonHeld, Sample[S]]:
+    """One control step: sense, then the half-step that trials run too.
 
     Args:
+        rule: The method's functions.
         parameters: Of the trial.
         state: Of the control steps.
         motion: World and hands now.
@@ -241,67 +204,40 @@ def control(
         The new state, what is held until the next control step, and the sample.
     """
     measurement = sense(parameters, motion, given, has_wheel)
-    controller_state, signals = controller.step(
-        parameters.controller,
-        state.controller,
-        measurement,
-        given.crossing_probability,
-        given.requested,
-        DT,
+    request = Request(
+        crossing_probability=given.crossing_probability,
+        requested=given.requested,
+        change_duration=math.nan,
     )
-    events = step_events(
-        parameters.traffic,
-        parameters.road,
-        state.events,
-        measurement,
-        phase(parameters, measurement),
-        xp.select(parameters.start.events > 0.5, given.leader_uniform, -1.0),
-        DT,
-    )
+    seat = seated(parameters, motion, given, measurement)
+    new_state, sample = half_step(rule, parameters, state, measurement, request, seat)
     held = PersonHeld(
         intended_angle=given.intended_angle,
         grip=given.grip,
         torque_command=state.torque_command,
         drive_command=drive_command(parameters.car, given.accelerator, given.brake),
     )
-    sample = _sample(state, motion, measurement, signals, given)
-    return (
-        PersonState(
-            controller=controller_state,
-            events=events,
-            torque_command=signals.applied_torque,
-            time=state.time + DT,
-        ),
-        held,
-        sample,
-    )
+    return new_state, held, sample
 
 
 @compiled
 def counted_from_here(motion: PersonMotion) -> PersonMotion:
     """The motion with the driver's torque counted from this control step on."""
-    plant = PlantMotion(world=motion.plant.world, arm=motion.plant.arm, muscles=0.0)
-    return PersonMotion(plant=plant, before=motion.plant.world.column)
+    plant = motion.plant._replace(muscles=0.0)
+    return PersonMotion(plant=plant, before=plant.world.column)
 
 
 @compiled
 def gripping(hands: ArmParameters, grip: Real) -> ArmParameters:
     """Arms that hold with a share of their stiffness; resting hands still weigh."""
-    return ArmParameters(
-        holding_gain=hands.holding_gain * grip,
-        stiffness=hands.stiffness * grip,
-        intrinsic_share=hands.intrinsic_share,
-        lag=hands.lag,
-        reflex_delay=hands.reflex_delay,
-        inertia=hands.inertia,
-        damping=hands.damping,
-        hands_on=hands.hands_on,
+    return hands._replace(
+        holding_gain=hands.holding_gain * grip, stiffness=hands.stiffness * grip
     )
 
 
 @compiled
 def hands_step(
-    parameters: LoopParameters, motion: PersonMotion, held: PersonHeld
+    parameters: LoopParameters[Any], motion: PersonMotion, held: PersonHeld
 ) -> PersonMotion:
     """World and virtual hands one plant step later: the plant step of the studies."""
     hands = gripping(parameters.driver.arm, held.grip)
@@ -324,4 +260,4 @@ def hands_step(
         drive_command=held.drive_command,
         dt=DT / parameters.plant_steps,
     )
-    return PersonMotion(plant=plant_step(motion.plant, fixed), before=motion.before)
+    return motion._replace(plant=plant_step(motion.plant, fixed))

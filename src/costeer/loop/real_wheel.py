@@ -6,13 +6,13 @@ is rendered by its motor.
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from costeer.base import array as xp
 from costeer.base.array import Real, compiled
 from costeer.base.integrate import rk4
+from costeer.loop.parameters import DT, LoopParameters
 from costeer.loop.person import PersonHeld, PersonMotion
-from costeer.loop.step import DT, LoopParameters, PlantMotion
 from costeer.plant.parameters import CarParameters, ColumnParameters
 from costeer.plant.steering import ColumnState, aligning_torque, motor_torque
 from costeer.plant.vehicle import VehicleInput, front_lateral_force, vehicle_rate
@@ -72,7 +72,7 @@ def rendered_torque(
 
 @compiled
 def wheel_step(
-    parameters: LoopParameters,
+    parameters: LoopParameters[Any],
     motion: PersonMotion,
     held: PersonHeld,
     wheel: WheelInput,
@@ -101,10 +101,7 @@ def wheel_step(
             ),
         ),
     )
-    plant = PlantMotion(
-        world=moved,
-        arm=motion.plant.arm,
-        muscles=motion.plant.muscles + wheel.driver_torque,
-    )
+    muscles = motion.plant.muscles + wheel.driver_torque
+    plant = motion.plant._replace(world=moved, muscles=muscles)
     torque = rendered_torque(car, column, moved, wheel)
-    return PersonMotion(plant=plant, before=motion.before), torque
+    return motion._replace(plant=plant), torque

@@ -7,13 +7,16 @@ array costs less than one (docs/decisions/0002-engine.md).
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from costeer.base.entry import entry
+from costeer.base.entry import entry, entry_for
 from costeer.base.packing import leaf_names, pack, packed, unpack
+from costeer.loop.half_step import initial_control
+from costeer.loop.parameters import LoopParameters
 from costeer.loop.person import (
     PersonHeld,
     PersonInput,
@@ -21,11 +24,18 @@ from costeer.loop.person import (
     counted_from_here,
     hands_step,
     initial_motion,
-    initial_state,
 )
 from costeer.loop.real_wheel import WheelInput, wheel_step
 from costeer.loop.rows import ROW_COLUMNS, row
-from costeer.loop.step import LoopParameters
+from costeer.methods.interface import (
+    Method,
+    P,
+    Rule,
+    S,
+    compiled_once,
+    rule_of,
+    usual_parameters,
+)
 from costeer.sensing.torque_observer import (
     TorqueObserverParameters,
     WheelMotion,
@@ -33,8 +43,9 @@ from costeer.sensing.torque_observer import (
 from costeer.sensing.torque_observer import initial_state as observer_state
 from costeer.sensing.torque_observer import step as observe
 
-_LIKE = LoopParameters()
-_STATE = initial_state(_LIKE)
+_LIKE = LoopParameters(controller=0.0)
+"""Plant and hands do not look at the method."""
+
 _MOTION = initial_motion(_LIKE)
 
 NOTHING_GIVEN = PersonInput(
@@ -72,7 +83,8 @@ class PersonMemory(NamedTuple):
 
     Attributes:
         parameters: Packed `LoopParameters`, shape `(parameter,)`.
-        state: Packed `PersonState`, shape `(state,)`.
+        plant: The same without the method, for the plant steps.
+        state: Packed `ControlState`, shape `(state,)`.
         motion: Packed `PersonMotion`, shape `(motion,)`.
         given: Room for a packed `PersonInput`, shape `(input,)`.
         held: Room for a packed `PersonHeld`, shape `(held,)`.
@@ -81,6 +93,7 @@ class PersonMemory(NamedTuple):
     """
 
     parameters: NDArray[np.float64]
+    plant: NDArray[np.float64]
     state: NDArray[np.float64]
     motion: NDArray[np.float64]
     given: NDArray[np.float64]
@@ -89,11 +102,12 @@ class PersonMemory(NamedTuple):
     row: NDArray[np.float64]
 
 
-def person_memory(parameters: LoopParameters) -> PersonMemory:
+def person_memory(method: Method[P, S], parameters: LoopParameters[P]) -> PersonMemory:
     """Memory of a drive that begins."""
     return PersonMemory(
         parameters=packed(parameters),
-        state=packed(initial_state(parameters)),
+        plant=packed(LoopParameters(0.0, *parameters[1:])),
+        state=packed(initial_control(rule_of(method), parameters)),
         motion=packed(initial_motion(parameters)),
         given=packed(NOTHING_GIVEN),
         held=packed(_HELD),
@@ -102,39 +116,53 @@ def person_memory(parameters: LoopParameters) -> PersonMemory:
     )
 
 
-@entry
-def control_tick(
-    parameters: NDArray[np.float64],
-    state: NDArray[np.float64],
-    motion: NDArray[np.float64],
-    given: NDArray[np.float64],
-    has_wheel: bool,
-    held: NDArray[np.float64],
-    out: NDArray[np.float64],
-) -> None:
-    """One control step: sense, run the method, fill the row.
+ControlTick = Callable[..., None]
+"""One control step on the arrays of a `PersonMemory`: see `control_tick`."""
 
-    Args:
-        parameters: Of `PersonMemory`.
-        state: Of `PersonMemory`, changed in place.
-        motion: Of `PersonMemory`, changed in place: the driver's torque counts anew.
-        given: Packed `PersonInput`.
-        has_wheel: Whether a real wheel is held.
-        held: Filled with what the plant steps until the next control step hold.
-        out: Filled in the order of `ROW_COLUMNS`.
+
+def control_tick(method: Method[P, S]) -> ControlTick:
+    """The compiled control step of a method: sense, run the method, fill the row.
+
+    Returns:
+        A function of the arrays `parameters`, `state` and `motion` of a `PersonMemory`,
+        the packed `PersonInput`, whether a real wheel is held, `held` and `row`. State
+        and motion are changed in place (the driver's torque counts anew), `held` is
+        filled with what the plant steps until the next control step hold.
     """
-    now = unpack(_MOTION, motion)
-    new_state, kept, sample = control(
-        unpack(_LIKE, parameters),
-        unpack(_STATE, state),
-        now,
-        unpack(NOTHING_GIVEN, given),
-        has_wheel,
-    )
-    pack(state, new_state)
-    pack(motion, counted_from_here(now))
-    pack(held, kept)
-    pack(out, row(sample))
+    tick: ControlTick = compiled_once(_compiled_tick, method)
+    return tick
+
+
+def _compiled_tick(method: Method[P, S]) -> ControlTick:
+    """`control_tick`, made anew."""
+    initial_state, step = rule_of(method)
+    like = LoopParameters(controller=usual_parameters(method))
+    like_state = initial_control(rule_of(method), like)
+
+    def tick(
+        parameters: NDArray[np.float64],
+        state: NDArray[np.float64],
+        motion: NDArray[np.float64],
+        given: NDArray[np.float64],
+        has_wheel: bool,
+        held: NDArray[np.float64],
+        out: NDArray[np.float64],
+    ) -> None:
+        now = unpack(_MOTION, motion)
+        new_state, kept, sample = control(
+            Rule(initial_state, step),
+            unpack(like, parameters),
+            unpack(like_state, state),
+            now,
+            unpack(NOTHING_GIVEN, given),
+            has_wheel,
+        )
+        pack(state, new_state)
+        pack(motion, counted_from_here(now))
+        pack(held, kept)
+        pack(out, row(sample))
+
+    return entry_for((initial_state, step), tick)
 
 
 @entry

@@ -1,184 +1,71 @@
-"""A whole trial: the closed loop run from start to the end of the road.
+"""A whole trial: the closed loop of a method run from start to the end of the road.
 
-The same tick runs in three engines: compiled by Numba (default), as plain Python, and
-traced by JAX (loop/jax_rollout.py).
+The same steps (loop/tick.py) run in three engines: compiled by Numba, the default, as
+plain Python, and traced by JAX. Each method has machine code of its own.
 """
 
 from __future__ import annotations
 
-import math
-from typing import NamedTuple
+from typing import Any
 
 import numpy as np
+from numba.core import errors
 from numpy.typing import NDArray
 
-from costeer.base import array as xp
-from costeer.base.array import Flag, Real, compiled
-from costeer.base.entry import entry
-from costeer.base.packing import pack, packed, unpack
-from costeer.drivers.decision import time_to_crossing
-from costeer.drivers.driver import DriverNoise
-from costeer.intention.features import IntentionSample, facing
-from costeer.intention.wavefront import WavefrontState, WavefrontWeights, advance
-from costeer.loop.rows import ROW_COLUMNS, Row, row
-from costeer.loop.step import (
-    DT,
-    LoopParameters,
-    LoopState,
-    initial_state,
-    planned_to_cross,
-    sense,
-    step,
+from costeer.base.entry import entry_for
+from costeer.base.packing import packed, unpack
+from costeer.intention.wavefront import WavefrontState, WavefrontWeights
+from costeer.loop.jax_rollout import jax_rollout
+from costeer.loop.parameters import LoopParameters
+from costeer.loop.rows import ROW_COLUMNS
+from costeer.loop.tick import Script, run
+from costeer.methods.interface import (
+    Method,
+    P,
+    Rule,
+    S,
+    compiled_once,
+    rule_of,
+    usual_parameters,
 )
-from costeer.sensing.measurement import Measurement
 
-INTENTION_OFF = 0
-INTENTION_SCRIPTED = 1
-INTENTION_NETWORK = 2
-
-REQUEST_DURATION = 0.1
-"""How long a requested lane change stays requested [s]."""
-
-PREDICTION_HORIZON = 3.0
-"""g of Eq. (2): the network predicts a crossing within this time [s]."""
-
-_LIKE = LoopParameters()
-_NOISE = DriverNoise(*([0.0] * len(DriverNoise._fields)))
+Rows = NDArray[np.float64]
 
 
-class Script(NamedTuple):
-    """Where the crossing probability comes from.
+def _compiled_trial(method: Method[P, S]) -> Any:  # Any: a compiled function of Numba
+    """The compiled trial of a method; its machine code lies in the method's folder."""
+    initial_state, step = rule_of(method)
+    like = LoopParameters(controller=usual_parameters(method))
 
-    Attributes:
-        intention: `INTENTION_OFF`, `INTENTION_SCRIPTED` or `INTENTION_NETWORK`.
-        horizon: A scripted verdict is positive when the driver's own plan crosses the
-            line within this time [s].
-        trigger_times: When a lane change is requested, shape `(request,)` [s].
-    """
+    def run_packed(
+        parameters: Rows,
+        script: Script,
+        weights: WavefrontWeights,
+        memory: WavefrontState,
+        noise: Rows,
+        rows: Rows,
+    ) -> int:
+        # A tuple of functions is made in compiled code: Numba cannot take one.
+        rule = Rule(initial_state, step)
+        given = unpack(like, parameters)
+        return run(rule, given, script, weights, memory, noise, rows)
 
-    intention: int
-    horizon: Real
-    trigger_times: NDArray[np.float64]
-
-
-@compiled
-def intention_sample(measurement: Measurement) -> IntentionSample:
-    """Eq. (1): the six signals, mirrored so that the adjacent lane is on the right.
-
-    Of a head that the tracker has lost the network is told so.
-    """
-    seen = xp.select(measurement.head_yaw_valid, measurement.head_yaw, math.nan)
-    sample = IntentionSample(
-        head_yaw=seen,
-        longitudinal_acceleration=measurement.longitudinal_acceleration,
-        longitudinal_velocity=measurement.longitudinal_velocity,
-        steering_wheel_angle=measurement.steering_wheel_angle,
-        distance_to_adjacent_lane=measurement.distance_to_adjacent_lane,
-        yaw_angle=measurement.yaw_angle,
-    )
-    return facing(sample, measurement.side)
-
-
-@compiled
-def scripted_probability(
-    parameters: LoopParameters, state: LoopState, horizon: Real
-) -> Real:
-    """1 while the driver's own plan crosses the line within `horizon` [s], else 0.
-
-    A system that follows the plan begins when the driver does, half the planned
-    duration before the crossing.
-    """
-    plan = state.driver.decision
-    begins = xp.select(
-        parameters.follows_plan > 0.5, plan.change_duration / 2.0, horizon
-    )
-    return xp.select(planned_to_cross(time_to_crossing(plan), begins), 1.0, 0.0)
-
-
-@compiled
-def requested(trigger_times: NDArray[np.float64], time: Real) -> Flag:
-    """Whether a lane change is requested at `time` [s]."""
-    asked = False
-    for i in range(len(trigger_times)):
-        since = time - trigger_times[i] + 0.5 * DT
-        asked = asked | ((since >= 0.0) & (since < REQUEST_DURATION))
-    return asked
-
-
-@compiled
-def tick(
-    parameters: LoopParameters,
-    state: LoopState,
-    script: Script,
-    weights: WavefrontWeights,
-    memory: WavefrontState,
-    noise: DriverNoise,
-) -> tuple[LoopState, Row]:
-    """One control step with its sample, its verdict and its row."""
-    measurement = sense(parameters, state)
-    probability = math.nan
-    if script.intention == INTENTION_SCRIPTED:
-        probability = scripted_probability(parameters, state, script.horizon)
-    if script.intention == INTENTION_NETWORK:
-        probability = advance(weights, memory, intention_sample(measurement))
-    asked = requested(script.trigger_times, state.time)
-    new_state, sample = step(parameters, state, measurement, probability, asked, noise)
-    return new_state, row(sample)
-
-
-@compiled
-def run(
-    parameters: LoopParameters,
-    script: Script,
-    weights: WavefrontWeights,
-    memory: WavefrontState,
-    noise: NDArray[np.float64],
-    rows: NDArray[np.float64],
-) -> int:
-    """Fill `rows` until the road or the noise ends; return how many were filled.
-
-    Args:
-        parameters: Of the trial.
-        script: Where the crossing probability comes from.
-        weights: Of the network.
-        memory: Of the network, changed in place.
-        noise: Random numbers, shape `(time, draw)`.
-        rows: Filled in the order of `ROW_COLUMNS`, shape `(time, column)`.
-    """
-    state = initial_state(parameters)
-    for k in range(len(noise)):
-        drawn = unpack(_NOISE, noise[k])
-        state, filled = tick(parameters, state, script, weights, memory, drawn)
-        pack(rows[k], filled)
-        if state.world.vehicle.longitudinal_position >= parameters.road.length:
-            return k + 1
-    return len(noise)
-
-
-@entry
-def _run_compiled(
-    packed_parameters: NDArray[np.float64],
-    script: Script,
-    weights: WavefrontWeights,
-    memory: WavefrontState,
-    noise: NDArray[np.float64],
-    rows: NDArray[np.float64],
-) -> int:
-    parameters = unpack(_LIKE, packed_parameters)
-    return run(parameters, script, weights, memory, noise, rows)
+    return entry_for((initial_state, step), run_packed)
 
 
 def rollout(
-    parameters: LoopParameters,
+    method: Method[P, S],
+    parameters: LoopParameters[P],
     script: Script,
     weights: WavefrontWeights,
     memory: WavefrontState,
-    noise: NDArray[np.float64],
+    noise: Rows,
     engine: str,
-) -> NDArray[np.float64]:
+) -> Rows:
     """Run one trial.
 
     Args:
+        method: That assists.
         parameters: Of the trial.
         script: Where the crossing probability comes from.
         weights: Of the network.
@@ -190,19 +77,44 @@ def rollout(
         Rows in the order of `ROW_COLUMNS`, shape `(time, column)`.
 
     Raises:
-        ValueError: If the engine is not known, or JAX is asked for the network.
+        ValueError: If the engine is not known, JAX is asked for the network, or the
+            method cannot be compiled.
         ModuleNotFoundError: If the engine is not installed.
     """
     if engine == "jax":
-        from costeer.loop.jax_rollout import jax_rollout
-
-        return jax_rollout(parameters, script, noise)
+        return jax_rollout(method, parameters, script, noise)
     rows = np.empty((len(noise), len(ROW_COLUMNS)))
     if engine == "numba":
-        given = packed(parameters)
-        count = _run_compiled(given, script, weights, memory, noise, rows)
+        count = _run_compiled(
+            method, packed(parameters), script, weights, memory, noise, rows
+        )
     elif engine == "python":
-        count = run(parameters, script, weights, memory, noise, rows)
+        rule = rule_of(method)
+        count = run(rule, parameters, script, weights, memory, noise, rows)
     else:
         raise ValueError(f"engine '{engine}' is not known; choose numba, python or jax")
     return rows[:count]
+
+
+def _run_compiled(method: Method[P, S], *arguments: Any) -> int:
+    """Run the compiled trial.
+
+    Raises:
+        ValueError: If Numba cannot compile the method.
+    """
+    try:
+        count: int = compiled_once(_compiled_trial, method)(*arguments)
+    except errors.NumbaError as error:
+        raise ValueError(cannot_compile(method, error)) from error
+    return count
+
+
+def cannot_compile(method: Method[P, S], error: Exception) -> str:
+    """Why a method does not compile, in the lines that speak of its own code."""
+    told = [line.strip() for line in str(error).splitlines() if line.strip()]
+    reasons = [line for line in told if not line.startswith(("-", "File", "During"))]
+    return (
+        f"method '{method.name}' cannot be compiled: {'; '.join(reasons[-4:])}. Each "
+        "of its functions, and each function they call, is marked @costeer.compiled; "
+        "costeer.testing.check_method says more"
+    )

@@ -7,13 +7,13 @@ screen; packed, they lie flat in the order of `ROW_COLUMNS`.
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from costeer.base import array as xp
 from costeer.base.array import Flag, Real, compiled
-from costeer.controller.signals import Signals
+from costeer.controller.signals import Assistance, Request
 from costeer.loop.events import EventState, leader_visible
-from costeer.loop.step import Sample
+from costeer.loop.half_step import Sample
 from costeer.sensing.measurement import Measurement
 
 
@@ -117,7 +117,7 @@ def motion_row(measurement: Measurement) -> MotionRow:
 
 
 @compiled
-def guidance_row(signals: Signals) -> GuidanceRow:
+def guidance_row(signals: Assistance, request: Request) -> GuidanceRow:
     """The controller's part of a row."""
     return GuidanceRow(
         target_lane=signals.target.lane,
@@ -131,7 +131,7 @@ def guidance_row(signals: Signals) -> GuidanceRow:
         driver_pseudo_work=signals.consistency.driver_pseudo_work,
         torque_agreement=signals.consistency.torque_agreement,
         consistent=_number(signals.consistency.consistent),
-        crossing_probability=signals.crossing_probability,
+        crossing_probability=request.crossing_probability,
         intention=_number(signals.intention),
         mode=signals.target.mode,
     )
@@ -156,13 +156,13 @@ def leader_row(events: EventState, position: Real) -> LeaderRow:
 
 
 @compiled
-def row(sample: Sample) -> Row:
+def row(sample: Sample[Any]) -> Row:
     """The sample as a row."""
     position = sample.measurement.longitudinal_position
     return Row(
         time=sample.time,
         motion=motion_row(sample.measurement),
-        guidance=guidance_row(sample.signals),
+        guidance=guidance_row(sample.signals, sample.request),
         leader=leader_row(sample.events, position),
         applied_torque=sample.motor_torque,
         event=sample.events.event,

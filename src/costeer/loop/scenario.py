@@ -3,24 +3,22 @@
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from costeer.base.array import Real
-from costeer.controller.actuation import ActuationParameters
-from costeer.controller.consistency import ConsistencyParameters
-from costeer.controller.guidance import GuidanceParameters
-from costeer.controller.step import ControllerParameters
-from costeer.controller.trajectory import TrajectoryParameters
 from costeer.drivers.driver import DriverParameters
 from costeer.drivers.population import hands_off, participant_driver
-from costeer.loop.rollout import (
+from costeer.loop.overrides import built
+from costeer.loop.parameters import LoopParameters, StartParameters
+from costeer.loop.tick import (
     INTENTION_NETWORK,
     INTENTION_OFF,
     INTENTION_SCRIPTED,
     PREDICTION_HORIZON,
 )
-from costeer.loop.step import LoopParameters, StartParameters
-from costeer.methods.registry import method_named
+from costeer.methods.conditions import Condition, completed
+from costeer.methods.manual import MANUAL
+from costeer.methods.registry import AnyMethod, method_named
 from costeer.plant.parameters import (
     CARS,
     CarParameters,
@@ -41,9 +39,6 @@ DRIVERS = ("virtual", "hands-off")
 PILOT_SEED = 900_001
 """Seed of the pilot drivers that set the inconsistency threshold δ."""
 
-SLIP_ANGLE_GAIN_SHARE = 0.45
-"""K_alpha over the car's self-aligning stiffness [-]."""
-
 
 class TrialSetup(NamedTuple):
     """One trial, in full: the same setup gives the same record.
@@ -51,14 +46,18 @@ class TrialSetup(NamedTuple):
     Attributes:
         participant: Number of the driver in the population.
         seed: Of the population and of all noise.
-        condition: Name; it picks the noise and is written into the record.
-        strength_factor: 1 strong, 0.4 weak, 0 without torque [-].
-        change_duration: Of the system's lane changes [s]; NaN in manual.
-        method: Name of the method.
+        condition: Name; it picks the noise, is written into the record, and says what
+            is NaN of the next two. Another name than those of Table IV needs a
+            strength.
+        strength_factor: 1 strong, 0.4 weak, 0 without torque; NaN: as the condition
+            says [-].
+        change_duration: Of the system's lane changes; NaN: as the condition says, in
+            manual none [s].
+        method: The method, its name, or where it is (`methods.registry`).
         length: Of the course [m].
         speed: That the trial starts with and the driver prefers [m/s].
-        car: Name of the car.
-        driver: "virtual" or "hands-off".
+        car: Name of the car, or its parameters.
+        driver: "virtual", "hands-off", or the parameters of a virtual driver.
         intention: "network", "scripted" (a perfect predictor of the driver's own
             plan) or "off".
         trigger_times: When the system starts a lane change whatever the driver wants
@@ -66,39 +65,36 @@ class TrialSetup(NamedTuple):
         events: Whether leaders appear.
         initial_offset: From the lane's centre at the start [m].
         plant_steps: Plant steps in a control step.
-        hold_time: Of the verdict of Table III [s].
-        look_ahead: Take the path at the preview point, the other reading of Fig. 4.
-        inconsistency_threshold: δ [W].
         prediction_horizon: Of the scripted intention, g of Eq. (2) [s].
         follows_plan: The system's lane changes begin and last as this driver plans
             each one; for pilot runs in which nobody disagrees.
         abandoned_share: Share of lane changes that the driver gives up on the way [-].
         wander_factor: The driver's wander in the lane is so much larger than that of
             the population [-].
+        parameters: Dotted names of parameters and the values they are given, as
+            `("guidance.lateral_error_gain", 3.0)`; see `costeer parameters`.
     """
 
     participant: int = 1
     seed: int = 1
     condition: str = "manual"
-    strength_factor: Real = 0.0
-    change_duration: Real = 6.0
-    method: str = "ibhs"
+    strength_factor: Real = math.nan
+    change_duration: Real = math.nan
+    method: str | AnyMethod = "ibhs"
     length: Real = 8000.0
     speed: Real = 70.0 / 3.6
-    car: str = "default"
-    driver: str = "virtual"
+    car: str | CarParameters = "default"
+    driver: str | DriverParameters = "virtual"
     intention: str = "network"
     trigger_times: tuple[Real, ...] = ()
     events: bool = True
     initial_offset: Real = 0.0
     plant_steps: int = 8
-    hold_time: Real = 0.0
-    look_ahead: bool = False
-    inconsistency_threshold: Real = ConsistencyParameters().inconsistency_threshold
     prediction_horizon: Real = PREDICTION_HORIZON
     follows_plan: bool = False
     abandoned_share: Real = 0.0
     wander_factor: Real = 1.0
+    parameters: tuple[tuple[str, Real], ...] = ()
 
 
 SLOWEST = 12.0
@@ -117,12 +113,9 @@ class _Range(NamedTuple):
 
 
 _RANGES = {
-    "strength_factor": _Range(0.0, 1.0, "-"),
     "length": _Range(100.0, 200_000.0, "m"),
     "speed": _Range(SLOWEST, FASTEST, "m/s"),
     "initial_offset": _Range(-1.5, 1.5, "m"),
-    "hold_time": _Range(0.0, 10.0, "s"),
-    "inconsistency_threshold": _Range(0.0, 100.0, "W"),
     "prediction_horizon": _Range(0.1, 10.0, "s"),
     "participant": _Range(0, 10_000_000, "-"),
     "seed": _Range(0, 2**63 - 1, "-"),
@@ -146,15 +139,13 @@ def check_setup(setup: TrialSetup) -> None:
                 f"{allowed.high} {allowed.unit}".removesuffix(" -")
                 + (", or 70km/h on the command line" if name == "speed" else "")
             )
-    _check_choice("car", setup.car, tuple(CARS))
-    _check_choice("driver", setup.driver, DRIVERS)
+    if isinstance(setup.car, str):
+        _check_choice("car", setup.car, tuple(CARS))
+    if isinstance(setup.driver, str):
+        _check_choice("driver", setup.driver, DRIVERS)
     _check_choice("intention", setup.intention, tuple(INTENTIONS))
+    trial_condition(setup)
     method_named(setup.method)
-    manual = setup.strength_factor == 0.0 and math.isnan(setup.change_duration)
-    if not manual and not 1.0 <= setup.change_duration <= 30.0:
-        raise ValueError(
-            f"change_duration is {setup.change_duration}; give a number from 1 to 30 s"
-        )
     for time in setup.trigger_times:
         if not (math.isfinite(time) and time >= 0.0):
             raise ValueError(
@@ -182,13 +173,36 @@ def _check_choice(name: str, value: str, choices: tuple[str, ...]) -> None:
         raise ValueError(f"{name} '{value}' is not known; choose one of {known}")
 
 
+def trial_condition(setup: TrialSetup) -> Condition:
+    """Strength and duration of a trial: as its condition says, or as it says itself.
+
+    Raises:
+        ValueError: If the condition is not known and no strength given, or a value is
+            out of range.
+    """
+    return completed(setup.condition, setup.strength_factor, setup.change_duration)
+
+
+def trial_method(setup: TrialSetup) -> AnyMethod:
+    """The method of a trial; in a condition without strength nothing assists."""
+    method = method_named(setup.method)
+    return method if trial_condition(setup).strength_factor > 0.0 else MANUAL
+
+
 def is_assisted(setup: TrialSetup) -> bool:
     """Whether the guidance gives torque in this trial."""
-    return method_named(setup.method).assists and setup.strength_factor > 0.0
+    return trial_method(setup).assists
+
+
+def trial_car(setup: TrialSetup) -> CarParameters:
+    """The car of a trial."""
+    return CARS[setup.car] if isinstance(setup.car, str) else setup.car
 
 
 def trial_driver(setup: TrialSetup) -> DriverParameters:
     """The driver of a trial, drawn from the population by seed and participant."""
+    if isinstance(setup.driver, DriverParameters):
+        return setup.driver
     if setup.driver == "hands-off":
         return hands_off(setup.speed)
     drawn = participant_driver(setup.seed, setup.participant, setup.speed)
@@ -200,41 +214,21 @@ def trial_driver(setup: TrialSetup) -> DriverParameters:
     )
 
 
-def controller_parameters(
-    setup: TrialSetup, car: CarParameters
-) -> ControllerParameters:
-    """The controller of a trial; it knows the car's nominal parameters."""
-    defaults = ControllerParameters()
-    duration = setup.change_duration
-    planned = 6.0 if math.isnan(duration) else duration
-    strength = setup.strength_factor if is_assisted(setup) else 0.0
-    gain = SLIP_ANGLE_GAIN_SHARE * car.aligning_stiffness
-    return defaults._replace(
-        car=car,
-        trajectory=TrajectoryParameters(change_duration=planned),
-        preview=defaults.preview._replace(look_ahead=setup.look_ahead),
-        guidance=GuidanceParameters(slip_angle_gain=gain),
-        consistency=ConsistencyParameters(
-            inconsistency_threshold=setup.inconsistency_threshold,
-            hold_time=setup.hold_time,
-        ),
-        actuation=ActuationParameters(strength_factor=strength),
-    )
-
-
-def loop_parameters(setup: TrialSetup) -> LoopParameters:
+def loop_parameters(setup: TrialSetup) -> LoopParameters[Any]:
     """All parameters of a trial.
+
+    What the setup changes of car, column and road the method knows of; what it changes
+    of the method itself comes last.
 
     Raises:
         ValueError: If the setup cannot be run.
     """
     check_setup(setup)
-    car = CARS[setup.car]
-    return LoopParameters(
-        car=car,
+    world = LoopParameters(
+        controller=0.0,
+        car=trial_car(setup),
         column=ColumnParameters(),
         road=RoadParameters(length=setup.length),
-        controller=controller_parameters(setup, car),
         driver=trial_driver(setup),
         start=StartParameters(
             speed=setup.speed,
@@ -243,4 +237,10 @@ def loop_parameters(setup: TrialSetup) -> LoopParameters:
         ),
         follows_plan=1.0 if setup.follows_plan else 0.0,
         plant_steps=setup.plant_steps,
+    )
+    return built(
+        world,
+        trial_method(setup),
+        trial_condition(setup),
+        dict(setup.parameters),
     )

@@ -7,135 +7,67 @@ the end of the step before.
 
 from __future__ import annotations
 
-from typing import NamedTuple
+import math
+from typing import Any, Generic, NamedTuple, TypeVar
 
 from costeer.base import array as xp
-from costeer.base.array import Flag, Real, compiled, repeat
-from costeer.controller import step as controller
-from costeer.controller.signals import Signals
-from costeer.controller.step import ControllerParameters, ControllerState
-from costeer.controller.trajectory import TrajectoryParameters
+from costeer.base.array import Flag, Real, compiled, inlined, repeat
+from costeer.controller.signals import Request
 from costeer.drivers import arm, driver
 from costeer.drivers.arm import ArmCommand, ArmParameters, ArmState
+from costeer.drivers.decision import CRUISING
 from costeer.drivers.driver import (
     Action,
     DriverNoise,
-    DriverParameters,
     DriverState,
     Knowledge,
     Perception,
 )
 from costeer.drivers.gaze import head_yaw
-from costeer.loop.events import EventState, initial_events, step_events
+from costeer.loop.half_step import (
+    ControlState,
+    Sample,
+    Seat,
+    half_step,
+    initial_control,
+)
+from costeer.loop.parameters import DT, LoopParameters
+from costeer.methods.interface import Rule
 from costeer.plant import world
-from costeer.plant.parameters import CarParameters, ColumnParameters, RoadParameters
+from costeer.plant.parameters import CarParameters, ColumnParameters
 from costeer.plant.road import cruising_lane, lane_centre
-from costeer.plant.traffic import TrafficParameters
 from costeer.plant.vehicle import drive_command
 from costeer.plant.world import Inputs, WorldState
 from costeer.sensing.measurement import Measurement
 from costeer.sensing.sensors import (
     HeadTracker,
-    SensorParameters,
     TrackerNoise,
     initial_tracker,
     measure,
     track_head,
 )
 
-DT = 1.0 / 60.0
-"""Control step [s]."""
+S = TypeVar("S")
 
 
-class StartParameters(NamedTuple):
-    """How a trial begins.
-
-    Attributes:
-        speed: Of the car [m/s]. Source: paper, about 70 km/h.
-        lateral_offset: From the centre of the cruising lane [m]. Source: assumed, 0.
-        events: 1 with leaders to overtake, 0 without [-]. Source: paper.
-    """
-
-    speed: Real = 70.0 / 3.6
-    lateral_offset: Real = 0.0
-    events: Real = 1.0
-
-
-class LoopParameters(NamedTuple):
-    """Everything that one trial needs besides random numbers.
-
-    Attributes:
-        car: Of the plant [SI units]. Source: plant/parameters.py.
-        column: Of the plant [SI units]. Source: plant/parameters.py.
-        road: Lanes [SI units]. Source: plant/parameters.py.
-        traffic: Leaders [SI units]. Source: plant/traffic.py.
-        sensors: Errors [SI units]. Source: sensing/sensors.py.
-        controller: Of the method [SI units]. Source: controller/step.py.
-        driver: Who holds the wheel [SI units]. Source: drivers/driver.py.
-        start: How the trial begins [SI units]. Source: this file.
-        follows_plan: 1 if the system's lane changes begin and last as the driver plans
-            this one, 0 if as the method says [-]. Source: assumed, for the pilot runs
-            in which nobody disagrees.
-        plant_steps: Plant steps in a control step [-]. Source: assumed, 8 make 480
-            Hz.
-    """
-
-    car: CarParameters = CarParameters()
-    column: ColumnParameters = ColumnParameters()
-    road: RoadParameters = RoadParameters()
-    traffic: TrafficParameters = TrafficParameters()
-    sensors: SensorParameters = SensorParameters()
-    controller: ControllerParameters = ControllerParameters()
-    driver: DriverParameters = DriverParameters()
-    start: StartParameters = StartParameters()
-    follows_plan: Real = 0.0
-    plant_steps: int = 8
-
-
-class LoopState(NamedTuple):
-    """World, driver, controller and what passes between them.
+class LoopState(NamedTuple, Generic[S]):
+    """World, driver, method and what passes between them.
 
     Attributes:
         world: Car and column.
-        events: Leader and event zone.
-        controller: Of the method.
+        control: Method, leader, torque command and time.
         driver: Who holds the wheel.
         head: What the tracker says of the head.
-        torque_command: Computed at the step before, acts in this one [N·m].
-        time: Since the trial began [s].
     """
 
     world: WorldState
-    events: EventState
-    controller: ControllerState
+    control: ControlState[S]
     driver: DriverState
     head: HeadTracker
-    torque_command: Real
-    time: Real
-
-
-class Sample(NamedTuple):
-    """All that was measured and computed at one step, for the record.
-
-    Attributes:
-        time: Since the trial began [s].
-        measurement: Of the sensors.
-        signals: Of the controller.
-        motor_torque: Guidance torque that the motor gives [N·m].
-        action: Of the driver.
-        events: Leader and event zone.
-    """
-
-    time: Real
-    measurement: Measurement
-    signals: Signals
-    motor_torque: Real
-    action: Action
-    events: EventState
 
 
 @compiled
-def initial_state(parameters: LoopParameters) -> LoopState:
+def initial_state(rule: Rule[Any, S], parameters: LoopParameters[Any]) -> LoopState[S]:
     """The car in the cruising lane, driver relaxed, controller keeping that lane."""
     lane = cruising_lane(parameters.road)
     centre = lane_centre(parameters.road, lane)
@@ -144,17 +76,14 @@ def initial_state(parameters: LoopParameters) -> LoopState:
         world=world.initial_state(
             parameters.car, centre + offset, parameters.start.speed
         ),
-        events=initial_events(),
-        controller=controller.initial_state(parameters.road, lane),
+        control=initial_control(rule, parameters),
         driver=driver.initial_state(centre + parameters.driver.tracking.lane_bias),
         head=initial_tracker(),
-        torque_command=0.0,
-        time=0.0,
     )
 
 
 @compiled
-def sense(parameters: LoopParameters, state: LoopState) -> Measurement:
+def sense(parameters: LoopParameters[Any], state: LoopState[S]) -> Measurement:
     """This step's sample of everything that is measured."""
     return measure(
         parameters.car,
@@ -202,7 +131,10 @@ def plant_step(motion: PlantMotion, held: PlantHeld) -> PlantMotion:
 
 @compiled
 def _felt_torque(
-    parameters: LoopParameters, before: WorldState, after: PlantMotion, action: Action
+    parameters: LoopParameters[Any],
+    before: WorldState,
+    after: PlantMotion,
+    action: Action,
 ) -> Real:
     """Mean torque between hands and wheel over a control step [N·m]."""
     old, new = before.column, after.world.column
@@ -217,7 +149,7 @@ def _felt_torque(
 
 @compiled
 def move(
-    parameters: LoopParameters, state: LoopState, action: Action
+    parameters: LoopParameters[Any], state: LoopState[S], action: Action
 ) -> tuple[WorldState, ArmState]:
     """Run plant and arms through one control step.
 
@@ -230,7 +162,7 @@ def move(
         column=arm.held_column(hands, parameters.column, action.arm.stiffening),
         arm=hands,
         command=action.arm,
-        torque_command=state.torque_command,
+        torque_command=state.control.torque_command,
         drive_command=drive_command(
             parameters.car, action.pedals.accelerator, action.pedals.brake
         ),
@@ -239,33 +171,15 @@ def move(
     start = PlantMotion(world=state.world, arm=state.driver.arm, muscles=0.0)
     motion = repeat(plant_step, parameters.plant_steps, start, held)
     moved = motion.arm
-    return motion.world, ArmState(
-        equilibrium=moved.equilibrium,
-        delayed=moved.delayed,
-        reflex=moved.reflex,
-        relief=moved.relief,
-        torque=_felt_torque(parameters, state.world, motion, action),
-    )
-
-
-@compiled
-def _with_arm(state: DriverState, moved: ArmState) -> DriverState:
-    """The driver with arms that have moved."""
-    return DriverState(
-        vision=state.vision,
-        arm=moved,
-        reliance=state.reliance,
-        tracking=state.tracking,
-        decision=state.decision,
-        gaze=state.gaze,
-        longitudinal=state.longitudinal,
+    return motion.world, moved._replace(
+        torque=_felt_torque(parameters, state.world, motion, action)
     )
 
 
 @compiled
 def drive(
-    parameters: LoopParameters,
-    state: LoopState,
+    parameters: LoopParameters[Any],
+    state: LoopState[S],
     measurement: Measurement,
     noise: DriverNoise,
 ) -> tuple[DriverState, Action]:
@@ -275,39 +189,23 @@ def drive(
     )
     perception = Perception(
         measurement=measurement,
-        leader=state.events.leader,
+        leader=state.control.events.leader,
         guidance_torque=state.world.column.motor_torque,
     )
     return driver.act(parameters.driver, state.driver, knowledge, perception, noise, DT)
 
 
 @compiled
-def _method(parameters: LoopParameters, state: LoopState) -> ControllerParameters:
-    """The controller, with the driver's own duration if it follows the plan."""
-    method = parameters.controller
+def own_duration(parameters: LoopParameters[Any], state: LoopState[S]) -> Real:
+    """Duration that the driver plans if the system follows it, else NaN [s]."""
     own = state.driver.decision.change_duration
-    duration = xp.select(
-        parameters.follows_plan > 0.5, own, method.trajectory.change_duration
-    )
-    return ControllerParameters(
-        car=method.car,
-        column=method.column,
-        road=method.road,
-        inference=method.inference,
-        trajectory=TrajectoryParameters(change_duration=duration),
-        preview=method.preview,
-        guidance=method.guidance,
-        consistency=method.consistency,
-        strength=method.strength,
-        replanning=method.replanning,
-        actuation=method.actuation,
-    )
+    return xp.select(parameters.follows_plan > 0.5, own, math.nan)
 
 
 @compiled
 def _tracked(
-    parameters: LoopParameters,
-    state: LoopState,
+    parameters: LoopParameters[Any],
+    state: LoopState[S],
     moved: DriverState,
     noise: DriverNoise,
 ) -> HeadTracker:
@@ -321,60 +219,41 @@ def _tracked(
     )
 
 
-@compiled
+@inlined
 def step(
-    parameters: LoopParameters,
-    state: LoopState,
+    rule: Rule[Any, S],
+    parameters: LoopParameters[Any],
+    state: LoopState[S],
     measurement: Measurement,
-    crossing_probability: Real,
-    requested: Flag,
+    request: Request,
     noise: DriverNoise,
-) -> tuple[LoopState, Sample]:
-    """Close the loop for one control step.
+) -> tuple[LoopState[S], Sample[S]]:
+    """Close the loop for one control step, a virtual driver in the seat.
 
     Args:
+        rule: The method's functions.
         parameters: Of the trial.
         state: Of everything.
         measurement: This step's sample (`sense`).
-        crossing_probability: Of the predictor; NaN for no verdict [-].
-        requested: A lane change asked for from outside.
+        request: Verdict of the predictor and what is asked for from outside.
         noise: Random numbers of this step.
     """
-    controller_state, signals = controller.step(
-        _method(parameters, state),
-        state.controller,
-        measurement,
-        crossing_probability,
-        requested,
-        DT,
-    )
     driver_state, action = drive(parameters, state, measurement, noise)
-    moved_world, moved_arm = move(parameters, state, action)
-    sample = Sample(
-        time=state.time,
-        measurement=measurement,
-        signals=signals,
-        motor_torque=state.world.column.motor_torque,
+    seat = Seat(
         action=action,
-        events=state.events,
+        at_home=driver_state.decision.phase == CRUISING,
+        leader_uniform=noise.leader_uniform,
+        motor_torque=state.world.column.motor_torque,
     )
-    events = step_events(
-        parameters.traffic,
-        parameters.road,
-        state.events,
-        measurement,
-        driver_state.decision.phase,
-        xp.select(parameters.start.events > 0.5, noise.leader_uniform, -1.0),
-        DT,
+    control, sample = half_step(
+        rule, parameters, state.control, measurement, request, seat
     )
+    moved_world, moved_arm = move(parameters, state, action)
     return LoopState(
         world=moved_world,
-        events=events,
-        controller=controller_state,
-        driver=_with_arm(driver_state, moved_arm),
+        control=control,
+        driver=driver_state._replace(arm=moved_arm),
         head=_tracked(parameters, state, driver_state, noise),
-        torque_command=signals.applied_torque,
-        time=state.time + DT,
     ), sample
 
 

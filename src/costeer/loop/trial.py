@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from costeer.base.array import Real
+from costeer.base.described import described
 from costeer.drivers.population import POPULATION_VERSION
 from costeer.intention.features import NUM_FEATURES, NUM_INPUTS, NUM_SCALED
 from costeer.intention.gru import NetworkWeights
@@ -22,15 +23,19 @@ from costeer.intention.wavefront import (
 from costeer.intention.wavefront import initial_state as network_memory
 from costeer.intention.weights import IntentionNetwork, load_weights
 from costeer.loop.noise import driver_noise
-from costeer.loop.rollout import Script, rollout
+from costeer.loop.parameters import DT, LoopParameters
+from costeer.loop.rollout import rollout
 from costeer.loop.rows import ROW_COLUMNS
 from costeer.loop.scenario import (
     INTENTIONS,
     TrialSetup,
     is_assisted,
     loop_parameters,
+    trial_condition,
+    trial_method,
 )
-from costeer.loop.step import DT, LoopParameters
+from costeer.loop.tick import Script
+from costeer.methods.interface import Method, method_sources
 from costeer.records.columns import COLUMNS, MODES, Column, TrialRecord
 
 SLOWEST_SHARE = 0.5
@@ -125,7 +130,9 @@ def simulate_trial(
         horizon=setup.prediction_horizon,
         trigger_times=np.array(sorted(setup.trigger_times), dtype=np.float64),
     )
-    rows = rollout(parameters, script, packed, network_memory(packed), noise, engine)
+    memory = network_memory(packed)
+    method = trial_method(setup)
+    rows = rollout(method, parameters, script, packed, memory, noise, engine)
     return TrialRecord(
         metadata=trial_metadata(setup, parameters, network_hash),
         columns=record_columns(rows, is_assisted(setup)),
@@ -165,33 +172,51 @@ def _as_kind(column: Column, values: NDArray[np.float64]) -> NDArray[Any]:
 
 
 def trial_metadata(
-    setup: TrialSetup, parameters: LoopParameters, network_hash: str | None
+    setup: TrialSetup, parameters: LoopParameters[Any], network_hash: str | None
 ) -> dict[str, object]:
     """The record's description of the trial, spec section 6."""
     configuration = json.loads(json.dumps(_as_dict(parameters)))
     configuration["setup"] = _as_dict(setup)
     text = json.dumps(configuration, sort_keys=True)
-    controller = parameters.controller
+    condition, method = trial_condition(setup), trial_method(setup)
     return {
         "version": distribution.version("costeer"),
         "seed": setup.seed,
         "participant": setup.participant,
         "condition": setup.condition,
-        "strength_factor": controller.actuation.strength_factor,
-        "change_duration": setup.change_duration,
-        "method": setup.method,
-        "car": setup.car,
+        "strength_factor": condition.strength_factor,
+        "change_duration": condition.change_duration,
+        "method": method.name,
+        "method_version": method.version,
+        "method_source_hash": method_sources(method),
+        "car": setup.car if isinstance(setup.car, str) else "own",
         "speed": setup.speed,
-        "driver": f"{setup.driver}, population {POPULATION_VERSION}",
+        "driver": _driver_text(setup),
         "intention_model_hash": network_hash,
-        "inconsistency_threshold": controller.consistency.inconsistency_threshold,
-        "replan_gain": controller.replanning.replan_gain,
-        "torque_limit": controller.actuation.torque_limit,
+        **_thresholds(parameters),
         "configuration": configuration,
         "configuration_hash": hashlib.sha256(text.encode()).hexdigest(),
         "driver_torque_source": "simulated",
         "git_revision": git_revision(),
     }
+
+
+def _driver_text(setup: TrialSetup) -> str:
+    """Who holds the wheel, in words."""
+    if isinstance(setup.driver, str):
+        return f"{setup.driver}, population {POPULATION_VERSION}"
+    return "virtual, parameters of its own"
+
+
+def _thresholds(parameters: LoopParameters[Any]) -> dict[str, object]:
+    """What a reader looks for first; null where the method has no such thing."""
+    known = {each.name: each.value for each in described(parameters)}
+    places = {
+        "inconsistency_threshold": "controller.consistency.inconsistency_threshold",
+        "replan_gain": "controller.replanning.replan_gain",
+        "torque_limit": "controller.actuation.torque_limit",
+    }
+    return {name: known.get(place) for name, place in places.items()}
 
 
 @cache
@@ -215,6 +240,10 @@ def git_revision() -> str | None:
 
 def _as_dict(value: Any) -> Any:  # Any: a tree of numbers, names and tuples
     """Nested named tuples as nested dictionaries; NaN, which JSON has not, as null."""
+    if isinstance(value, Method):
+        return value.name
+    if isinstance(value, np.ndarray):
+        return value.tolist()
     if isinstance(value, tuple) and hasattr(value, "_fields"):
         return {name: _as_dict(getattr(value, name)) for name in value._fields}
     if isinstance(value, tuple):

@@ -105,10 +105,4 @@ def appear(
 def drive_on(leader: LeaderState, dt: Real) -> LeaderState:
     """The leader `dt` [s] later."""
     moved = leader.longitudinal_position + leader.longitudinal_velocity * dt
-    return LeaderState(
-        present=leader.present,
-        longitudinal_position=moved,
-        longitudinal_velocity=leader.longitudinal_velocity,
-        lane=leader.lane,
-        num_appeared=leader.num_appeared,
-    )
+    return leader._replace(longitudinal_position=moved)

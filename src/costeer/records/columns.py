@@ -14,6 +14,9 @@ LANE_KEEPING = "lane_keeping"
 LANE_CHANGING = "lane_changing"
 MODES = (MANUAL, LANE_KEEPING, LANE_CHANGING)
 
+METHOD_PREFIX = "method_"
+"""With what the names of columns begin that a method adds."""
+
 
 class Column(NamedTuple):
     """One column of a trial record.

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from costeer.base.packing import leaf_names
 from costeer.devices.wheels.calibration import observer_parameters
 from costeer.devices.wheels.interface import Wheel, WheelReading
+from costeer.loop.parameters import LoopParameters
 from costeer.loop.person import PersonInput, initial_motion
 from costeer.loop.real_wheel import WheelInput
 from costeer.loop.realtime import (
@@ -27,7 +28,7 @@ from costeer.loop.realtime import (
     person_memory,
     wheel_tick,
 )
-from costeer.loop.step import LoopParameters
+from costeer.methods.interface import Tunable
 from costeer.plant.parameters import CarParameters
 from costeer.runtime.guard import GuardParameters, GuardState
 from costeer.runtime.guard import step as guarded
@@ -40,11 +41,17 @@ from costeer.runtime.hands import (
     press,
 )
 from costeer.runtime.hands import step as move_hands
-from costeer.runtime.setup import PLANT_DT, PLANT_STEPS, DriveSetup, drive_parameters
-from costeer.runtime.tunables import Tunable, place_of
+from costeer.runtime.setup import (
+    PLANT_DT,
+    PLANT_STEPS,
+    DriveSetup,
+    drive_method,
+    drive_parameters,
+)
+from costeer.runtime.tunables import place_of
 from costeer.sensing.torque_observer import TorqueObserverParameters
 
-_MOTION = leaf_names(initial_motion(LoopParameters()))
+_MOTION = leaf_names(initial_motion(LoopParameters(controller=0.0)))
 _ANGLE = _MOTION.index("plant.world.column.steering_wheel_angle")
 _RATE = _MOTION.index("plant.world.column.steering_wheel_rate")
 _SPEED = _MOTION.index("plant.world.vehicle.longitudinal_velocity")
@@ -90,7 +97,9 @@ class Cabin:
 
     def __init__(self, setup: DriveSetup) -> None:
         self._setup = setup
+        self.method = drive_method(setup)
         self._parameters = drive_parameters(setup)
+        self._tick = control_tick(self.method)
         self.wheel: Wheel | None = None
         self.reading: WheelReading | None = None
         self.wheel_torque = 0.0
@@ -105,7 +114,7 @@ class Cabin:
     def begin(self) -> None:
         """Put the car at the start of the course; tuned values stay."""
         tuned = getattr(self, "memory", None)
-        self.memory = person_memory(self._parameters)
+        self.memory = person_memory(self.method, self._parameters)
         if tuned is not None:
             self.memory.parameters[:] = tuned.parameters
         self.hands = HandsState()
@@ -116,18 +125,18 @@ class Cabin:
 
     def warm_up(self) -> None:
         """Compile all that will run, on a drive that is thrown away."""
-        memory = person_memory(self._parameters)
+        memory = person_memory(self.method, self._parameters)
         if self._setup.wheel is None:
-            hands_tick(memory.parameters, memory.motion, memory.held)
+            hands_tick(memory.plant, memory.motion, memory.held)
             return
-        wheel_tick(memory.parameters, memory.motion, memory.held, memory.wheel)
+        wheel_tick(memory.plant, memory.motion, memory.held, memory.wheel)
         observer = observer_memory(self._observed_device(), 0.0)
         observer_tick(observer.parameters, observer.state, observer.reading, PLANT_DT)
 
     def first_row(self) -> NDArray[np.float64]:
         """The row of the car at rest in time; nothing is stepped."""
         memory = self.memory
-        control_tick(
+        self._tick(
             memory.parameters,
             memory.state.copy(),
             memory.motion.copy(),
@@ -157,20 +166,28 @@ class Cabin:
 
     def tune(self, tunable: Tunable, value: float) -> float:
         """Set a tunable; return what it was."""
-        place = place_of(tunable)
+        place = place_of(self.method, tunable)
         before = float(self.memory.parameters[place])
         self.memory.parameters[place] = value
         return before
 
+    @property
+    def strength(self) -> float:
+        """Strength factor of the guidance now; 0 without assistance [-]."""
+        for tunable in self.method.tunables:
+            if tunable.name == "strength_factor":
+                return self.value_of(tunable)
+        return 1.0 if self.method.assists else 0.0
+
     def value_of(self, tunable: Tunable) -> float:
         """What a tunable is now."""
-        return float(self.memory.parameters[place_of(tunable)])
+        return float(self.memory.parameters[place_of(self.method, tunable)])
 
     def control(self, controls: Controls) -> NDArray[np.float64]:
         """One control step; returns the row, which the next call overwrites."""
         memory = self.memory
         memory.given[:] = self._given(controls)
-        control_tick(
+        self._tick(
             memory.parameters,
             memory.state,
             memory.motion,
@@ -227,7 +244,7 @@ class Cabin:
         """
         if self._setup.wheel is None and moving:
             memory = self.memory
-            hands_tick(memory.parameters, memory.motion, memory.held)
+            hands_tick(memory.plant, memory.motion, memory.held)
         if self.wheel is None:
             return
         self._feel(self.wheel, self.wheel.read())
@@ -282,7 +299,7 @@ class Cabin:
             friction=calibration.friction if calibration else 0.0,
         )
         memory.wheel[:] = wheel
-        return wheel_tick(memory.parameters, memory.motion, memory.held, memory.wheel)
+        return wheel_tick(memory.plant, memory.motion, memory.held, memory.wheel)
 
     def _give(self, wheel: Wheel, torque: float) -> None:
         """Write to the device, as often as it takes it."""

@@ -5,11 +5,11 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 
+from costeer.methods.conditions import CONDITION_NAMES, condition
 from costeer.methods.registry import method_named
 from costeer.runtime.cabin import Cabin
 from costeer.runtime.setup import DriveSetup, strength_of
 from costeer.runtime.tunables import checked_value, tunable_named
-from costeer.study.conditions import CONDITION_NAMES, condition
 
 
 class Choices:
@@ -40,7 +40,7 @@ class Choices:
         Raises:
             ValueError: If there is none of that name, or the value is out of range.
         """
-        tunable = tunable_named(name)
+        tunable = tunable_named(self._cabin.method, name)
         before = self._cabin.tune(tunable, checked_value(tunable, value))
         if before != value:
             self._mark("gain", f"{name} {before:.9g} -> {value:.9g} {tunable.unit}")

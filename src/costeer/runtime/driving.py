@@ -53,7 +53,6 @@ from costeer.runtime.patience import (
 from costeer.runtime.setup import DriveSetup, drive_parameters, leader_draws
 from costeer.runtime.shared import Shared
 from costeer.runtime.trace import Tracer
-from costeer.runtime.tunables import TUNABLES
 
 NEVER = math.inf
 
@@ -236,7 +235,7 @@ class Driving:
             self._clock(),
             self._compute_time,
             lateness,
-            self._cabin.value_of(TUNABLES[0]),
+            self._cabin.strength,
             self._choices.number,
             self._indicator.side,
         )

@@ -9,7 +9,7 @@ from costeer.devices.wheels.interface import (
     RIGHT_INDICATOR,
     WheelReading,
 )
-from costeer.loop.rollout import REQUEST_DURATION
+from costeer.loop.tick import REQUEST_DURATION
 
 _WORDS = {-1.0: "right", 0.0: "off", 1.0: "left"}
 

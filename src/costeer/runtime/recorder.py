@@ -4,15 +4,18 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Callable, Mapping
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from costeer.base.packing import packed, unpack
-from costeer.loop.step import LoopParameters
+from costeer.loop.parameters import LoopParameters
+from costeer.loop.scenario import is_assisted
 from costeer.loop.trial import shipped_network, trial_metadata
+from costeer.methods.registry import AnyMethod
 from costeer.runtime.frame import ENDED, PLACE, RUNNING
-from costeer.runtime.setup import DriveSetup, drive_parameters
+from costeer.runtime.setup import DriveSetup, drive_method, drive_parameters
 from costeer.runtime.shared import Shared
 from costeer.runtime.stream import Marker, RecordStream
 from costeer.runtime.tunables import place_of, tunable_named
@@ -31,9 +34,11 @@ def drive_metadata(
         tuned: Values of tunables that were changed, by name.
     """
     network = shipped_network().hash if setup.intention == "network" else None
-    parameters = tuned_parameters(drive_parameters(setup), tuned or {})
+    parameters = tuned_parameters(
+        drive_method(setup), drive_parameters(setup), tuned or {}
+    )
     described = trial_metadata(setup.trial, parameters, network)
-    if setup.trial.strength_factor > 0.0:
+    if is_assisted(setup.trial):
         duration = parameters.controller.trajectory.change_duration
         described["change_duration"] = duration
     hands = "virtual hands" if setup.wheel is None else setup.wheel.name
@@ -48,12 +53,12 @@ def drive_metadata(
 
 
 def tuned_parameters(
-    parameters: LoopParameters, tuned: Mapping[str, float]
-) -> LoopParameters:
+    method: AnyMethod, parameters: LoopParameters[Any], tuned: Mapping[str, float]
+) -> LoopParameters[Any]:
     """The parameters with tuned values in their places."""
     values = packed(parameters)
     for name, value in tuned.items():
-        values[place_of(tunable_named(name))] = value
+        values[place_of(method, tunable_named(method, name))] = value
     return unpack(parameters, values)
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,10 +12,10 @@ from costeer.devices.head.calibration import HeadCalibration
 from costeer.devices.wheels.calibration import WheelCalibration
 from costeer.devices.wheels.interface import WheelDescription
 from costeer.drivers.driver import DriverParameters
-from costeer.loop.scenario import TrialSetup, loop_parameters
-from costeer.loop.step import DT, LoopParameters
-from costeer.methods.registry import METHODS, method_named
-from costeer.study.conditions import Condition, condition
+from costeer.loop.parameters import DT, LoopParameters
+from costeer.loop.scenario import TrialSetup, loop_parameters, trial_method
+from costeer.methods.conditions import Condition, condition
+from costeer.methods.registry import METHODS, AnyMethod, method_named
 
 PLANT_STEPS = 16
 """Plant steps in a control step with a person: 960 Hz."""
@@ -74,7 +74,7 @@ def check_drive(setup: DriveSetup) -> None:
         )
 
 
-def drive_parameters(setup: DriveSetup) -> LoopParameters:
+def drive_parameters(setup: DriveSetup) -> LoopParameters[Any]:
     """Parameters of the loop: the trial's, with arms of average people.
 
     Raises:
@@ -82,6 +82,11 @@ def drive_parameters(setup: DriveSetup) -> LoopParameters:
     """
     trial = setup.trial._replace(plant_steps=PLANT_STEPS)
     return loop_parameters(trial)._replace(driver=DriverParameters())
+
+
+def drive_method(setup: DriveSetup) -> AnyMethod:
+    """The method whose functions the loop of a drive calls."""
+    return trial_method(setup.trial)
 
 
 def trial_setup(name: str, method: str, changed: TrialSetup) -> TrialSetup:
@@ -99,8 +104,6 @@ def trial_setup(name: str, method: str, changed: TrialSetup) -> TrialSetup:
     method_named(method)
     return changed._replace(
         condition=chosen.name,
-        strength_factor=strength_of(chosen, method),
-        change_duration=chosen.change_duration,
         method="manual" if chosen.strength_factor == 0.0 else method,
     )
 

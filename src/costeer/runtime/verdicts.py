@@ -22,7 +22,7 @@ from costeer.intention.wavefront import (
     initial_state,
     wavefront_weights,
 )
-from costeer.loop.step import DT
+from costeer.loop.parameters import DT
 from costeer.loop.trial import shipped_network
 from costeer.plant.parameters import RoadParameters
 from costeer.plant.road import adjacent_side

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from costeer.study.conditions import CONDITION_NAMES, condition
+from costeer.methods.conditions import CONDITION_NAMES, condition
 
 Column = Sequence[object] | NDArray[np.generic]
 Table = Mapping[str, Column]

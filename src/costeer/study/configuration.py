@@ -16,7 +16,7 @@ from costeer.base.entry import COMPILED_ROOMS
 from costeer.controller.step import ControllerParameters
 from costeer.intention.weights import load_weights
 from costeer.loop.scenario import TrialSetup, check_setup, check_study_seed
-from costeer.study.conditions import (
+from costeer.methods.conditions import (
     CONDITION_NAMES,
     MANUAL,
     check_conditions,

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from costeer.study.conditions import MANUAL, check_conditions
+from costeer.methods.conditions import MANUAL, check_conditions
 
 MOST_CONDITIONS = 8
 """Largest square made here; beyond it nobody drives all conditions in a day."""

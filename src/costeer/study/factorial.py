@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import NamedTuple
 
+from costeer.methods.conditions import DURATIONS, MANUAL, condition
 from costeer.study.cells import CHANGE_DURATION, CONDITION, STRENGTH
-from costeer.study.conditions import DURATIONS, MANUAL, condition
 from costeer.study.contrasts import Effect, one_way, two_way
 
 

@@ -16,8 +16,8 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from costeer.controller.replanning import ReplanningParameters
+from costeer.methods.conditions import CONDITION_NAMES
 from costeer.records.record import read_record
-from costeer.study.conditions import CONDITION_NAMES
 from costeer.study.folder import RECORDS, StudyFolder, read_study
 from costeer.study.outcome import WITHIN, PairRow, StudyTests, SummaryRow
 from costeer.study.quantities import WORKLOAD, Quantity

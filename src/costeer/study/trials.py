@@ -6,8 +6,8 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 from costeer.loop.scenario import TrialSetup
+from costeer.methods.conditions import CONDITION_NAMES
 from costeer.records.record import TrialRecord, read_record, write_record
-from costeer.study.conditions import CONDITION_NAMES
 from costeer.study.configuration import StudySettings, trial_setup
 from costeer.study.design import Trial, plan_trials
 from costeer.study.folder import StudyFolder, record_path

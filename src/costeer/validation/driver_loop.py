@@ -15,15 +15,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from costeer.drivers.driver import NORMAL_DRAWS, DriverNoise, DriverParameters
-from costeer.loop.step import (
-    DT,
-    LoopParameters,
-    LoopState,
-    drive,
-    initial_state,
-    move,
-    sense,
-)
+from costeer.loop.parameters import DT, LoopParameters
+from costeer.loop.step import LoopState, drive, initial_state, move, sense
+from costeer.methods.interface import rule_of
+from costeer.methods.manual import MANUAL
 
 Signal = NDArray[np.float64]
 Spectrum = NDArray[np.complex128]
@@ -49,7 +44,7 @@ SLOWEST_SWING = 0.5
 _STEP = 1e-6
 
 
-def smooth(parameters: LoopParameters) -> LoopParameters:
+def smooth(parameters: LoopParameters[Any]) -> LoopParameters[Any]:
     """The loop without dry friction, which has no slope at rest."""
     return parameters._replace(column=parameters.column._replace(friction=0.0))
 
@@ -70,9 +65,9 @@ def _stacked(members: Sequence[Any]) -> Any:  # Any: a tree of numbers or of arr
     return np.array(members, dtype=np.float64)[:, None]
 
 
-def _displaced(parameters: LoopParameters, x: Signal) -> LoopState:
+def _displaced(parameters: LoopParameters[Any], x: Signal) -> LoopState[Any]:
     """The loop displaced from straight driving by `x`, `(driver, run, state)`."""
-    state = initial_state(parameters)
+    state = initial_state(rule_of(MANUAL), parameters)
     at = dict(zip(STATES, np.moveaxis(x, -1, 0), strict=True))
     vehicle, hands = state.world.vehicle, state.driver.arm
     aim = vehicle.lateral_position + parameters.driver.tracking.lane_bias
@@ -91,7 +86,7 @@ def _displaced(parameters: LoopParameters, x: Signal) -> LoopState:
     )
 
 
-def _after_a_step(parameters: LoopParameters, x: Signal) -> Signal:
+def _after_a_step(parameters: LoopParameters[Any], x: Signal) -> Signal:
     """`STATES` one control step after `x`, up to the place of the aim."""
     state = _displaced(parameters, x)
     noise = DriverNoise(*quiet(1)[0].tolist())
@@ -108,7 +103,7 @@ def _after_a_step(parameters: LoopParameters, x: Signal) -> Signal:
 
 
 def transition(
-    parameters: LoopParameters, drivers: Sequence[DriverParameters]
+    parameters: LoopParameters[Any], drivers: Sequence[DriverParameters]
 ) -> Signal:
     """Matrix of one control step about straight driving for each driver.
 

@@ -14,18 +14,15 @@ import numpy as np
 
 from costeer.drivers.driver import DriverParameters
 from costeer.identification.fit import DriverFit
-from costeer.intention.wavefront import initial_state as network_memory
-from costeer.loop.noise import driver_noise
-from costeer.loop.rollout import Script, rollout
+from costeer.loop.parameters import DT
 from costeer.loop.scenario import (
     FASTEST,
-    INTENTIONS,
     SLOWEST,
     TrialSetup,
-    loop_parameters,
 )
-from costeer.loop.step import DT
-from costeer.loop.trial import SLOWEST_SHARE, idle_weights, record_columns
+from costeer.loop.trial import (
+    simulate_trial,
+)
 from costeer.records.columns import TrialRecord
 from costeer.study.definitions import Columns, Measure
 from costeer.study.jobs import run_jobs
@@ -142,17 +139,8 @@ def simulate(setup: TrialSetup, driver: DriverParameters, number: int) -> Column
         driver: Who drives, whatever the setup says.
         number: Of the trial: each has other noise.
     """
-    weights = idle_weights()
-    steps = math.ceil(setup.length / (SLOWEST_SHARE * setup.speed) / DT)
-    rows = rollout(
-        loop_parameters(setup)._replace(driver=driver),
-        Script(INTENTIONS[setup.intention], setup.prediction_horizon, np.zeros(0)),
-        weights,
-        network_memory(weights),
-        driver_noise(setup.seed, number, setup.condition, steps),
-        "numba",
-    )
-    return record_columns(rows, assisted=False)
+    own = setup._replace(driver=driver, participant=number)
+    return simulate_trial(own).columns
 
 
 def measured(columns: Columns) -> dict[str, Measure]:

@@ -15,8 +15,8 @@ from numpy.typing import NDArray
 from costeer.base.array import Real
 from costeer.controller import actuation
 from costeer.controller.actuation import STRONG, ActuationParameters
+from costeer.loop.parameters import DT
 from costeer.loop.scenario import TrialSetup
-from costeer.loop.step import DT
 from costeer.loop.trial import simulate_trial
 from costeer.plant.parameters import CARS, RoadParameters
 from costeer.records.columns import TrialRecord

@@ -20,7 +20,8 @@ from numpy.typing import NDArray
 from costeer.base.array import Real
 from costeer.controller import step as controller
 from costeer.controller import trajectory
-from costeer.loop.step import DT, LoopParameters
+from costeer.controller.step import ControllerParameters
+from costeer.loop.parameters import DT, LoopParameters
 from costeer.plant import world
 from costeer.plant.parameters import ColumnParameters
 from costeer.plant.road import cruising_lane, lane_centre
@@ -72,7 +73,9 @@ def _without_friction(column: ColumnParameters) -> ColumnParameters:
     return column._replace(friction=0.0)
 
 
-def _world(parameters: LoopParameters, states: Vector) -> WorldState:
+def _world(
+    parameters: LoopParameters[ControllerParameters], states: Vector
+) -> WorldState:
     """The world in the given deviation from straight driving."""
     car, speed = parameters.car, parameters.start.speed
     centre = lane_centre(parameters.road, cruising_lane(parameters.road))
@@ -91,7 +94,9 @@ def _world(parameters: LoopParameters, states: Vector) -> WorldState:
     )
 
 
-def _deviation(parameters: LoopParameters, state: WorldState) -> Vector:
+def _deviation(
+    parameters: LoopParameters[ControllerParameters], state: WorldState
+) -> Vector:
     """The inverse of `_world`."""
     centre = lane_centre(parameters.road, cruising_lane(parameters.road))
     vehicle = state.vehicle
@@ -106,7 +111,9 @@ def _deviation(parameters: LoopParameters, state: WorldState) -> Vector:
     )
 
 
-def _moved(parameters: LoopParameters, states: Vector, command: Real) -> Vector:
+def _moved(
+    parameters: LoopParameters[ControllerParameters], states: Vector, command: Real
+) -> Vector:
     """States one control step later, without dry friction."""
     column = _without_friction(parameters.column)
     state = _world(parameters, states)
@@ -119,7 +126,7 @@ def _moved(parameters: LoopParameters, states: Vector, command: Real) -> Vector:
 
 
 def _instructed(
-    parameters: LoopParameters, states: Vector, compensated: bool
+    parameters: LoopParameters[ControllerParameters], states: Vector, compensated: bool
 ) -> Vector:
     """Guidance torque before the gain in lane keeping, shape `(1,)` [N·m]."""
     method, road = parameters.controller, parameters.road
@@ -141,7 +148,9 @@ def _derivative(function: Callable[[Vector], Vector], size: int) -> Vector:
     return np.transpose(columns)
 
 
-def linear_loop(parameters: LoopParameters, compensated: bool = False) -> LinearLoop:
+def linear_loop(
+    parameters: LoopParameters[ControllerParameters], compensated: bool = False
+) -> LinearLoop:
     """Linearise vehicle, column, motor and lane-keeping guidance.
 
     Args:

@@ -15,8 +15,8 @@ from numpy.typing import NDArray
 from costeer.base.array import Real
 from costeer.loop.scenario import TrialSetup
 from costeer.loop.trial import simulate_trial
+from costeer.methods.conditions import MANUAL
 from costeer.records.columns import TrialRecord
-from costeer.study.conditions import MANUAL
 from costeer.study.measures import lane_change_rows, trial_row
 from costeer.validation.glances import (
     false_glance_share,

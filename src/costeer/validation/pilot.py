@@ -18,7 +18,7 @@ from costeer.loop.scenario import PILOT_SEED, TrialSetup
 from costeer.loop.trial import simulate_trial
 from costeer.study.jobs import JobsStoppedError, run_jobs
 
-NEVER = 100.0
+UNDISPUTED = (("consistency.inconsistency_threshold", 100.0),)
 """A threshold that no run reaches, so that the gain stays full [W]."""
 
 PERCENTILE = 99.9
@@ -57,7 +57,7 @@ def agreeing_setups(participant: int) -> list[TrialSetup]:
             strength_factor=strength,
             intention="off",
             events=False,
-            inconsistency_threshold=NEVER,
+            parameters=UNDISPUTED,
         )
         changing = keeping._replace(
             condition=f"pilot-changing-{strength}",

@@ -20,12 +20,12 @@ from numpy.typing import NDArray
 
 from costeer.base.array import Real
 from costeer.controller.actuation import STRONG
-from costeer.loop.scenario import PILOT_SEED, TrialSetup
-from costeer.loop.step import DT
+from costeer.loop.parameters import DT
+from costeer.loop.scenario import PILOT_SEED, TrialSetup, trial_car
 from costeer.loop.trial import simulate_trial
-from costeer.plant.parameters import CARS, RoadParameters
+from costeer.plant.parameters import RoadParameters
 from costeer.validation.hands_off import CHANGE_DURATIONS
-from costeer.validation.pilot import NEVER
+from costeer.validation.pilot import UNDISPUTED
 from costeer.validation.threads import in_threads
 
 Columns = dict[str, NDArray[Any]]  # Any: as a record's
@@ -143,7 +143,7 @@ def wrong_change(
     longest = 1.3 * (trigger + change_duration + AFTERWARDS)
     setup = setup._replace(length=setup.speed * longest)
     if system == "never yields":
-        return setup._replace(inconsistency_threshold=NEVER)
+        return setup._replace(parameters=UNDISPUTED)
     return setup
 
 
@@ -162,7 +162,7 @@ def answer(columns: Columns, setup: TrialSetup) -> dict[str, Real]:
     push = _SIDE * columns["applied_torque"][rows]
     gain = columns["haptic_gain"][rows]
     overruled = time_to_overrule(driver, push)
-    line = RoadParameters().lane_width / 2.0 - CARS[setup.car].width / 2.0
+    line = RoadParameters().lane_width / 2.0 - trial_car(setup).width / 2.0
     return {
         "deviation": float(across.max() - across[0]),
         "peak_torque": float(np.abs(driver).max()),

@@ -15,7 +15,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import cache
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,17 +24,14 @@ from costeer.base.array import Real
 from costeer.drivers.driver import DriverParameters
 from costeer.drivers.population import participant_driver
 from costeer.intention.wavefront import initial_state as network_memory
-from costeer.loop.rollout import (
-    INTENTION_OFF,
-    PREDICTION_HORIZON,
-    Script,
-    rollout,
-)
+from costeer.loop.parameters import DT, LoopParameters
+from costeer.loop.rollout import rollout
 from costeer.loop.rows import ROW_COLUMNS
-from costeer.loop.scenario import TrialSetup, loop_parameters
-from costeer.loop.step import DT, LoopParameters
+from costeer.loop.scenario import TrialSetup, loop_parameters, trial_car
+from costeer.loop.tick import INTENTION_OFF, PREDICTION_HORIZON, Script
 from costeer.loop.trial import idle_weights, simulate_trial
-from costeer.plant.parameters import CARS, RoadParameters
+from costeer.methods.manual import MANUAL
+from costeer.plant.parameters import CARS, CarParameters, RoadParameters
 from costeer.validation.driver_loop import (
     least_damped,
     poles,
@@ -107,7 +104,9 @@ class Stability(NamedTuple):
     edge_margin: Signal
 
 
-def manual_setup(car: str, speed: Real, duration: Real = _RUN) -> TrialSetup:
+def manual_setup(
+    car: str | CarParameters, speed: Real, duration: Real = _RUN
+) -> TrialSetup:
     """Manual driving on an empty road for `duration` [s]."""
     return TrialSetup(
         condition="manual",
@@ -124,7 +123,7 @@ def _no_intention() -> Script:
     return Script(INTENTION_OFF, PREDICTION_HORIZON, np.empty(0))
 
 
-def offset_run(parameters: LoopParameters, offset: Real = OFFSET) -> Signal:
+def offset_run(parameters: LoopParameters[Any], offset: Real = OFFSET) -> Signal:
     """Distance from the aim after a start beside it, without noise, `(time,)` [m].
 
     Args:
@@ -134,6 +133,7 @@ def offset_run(parameters: LoopParameters, offset: Real = OFFSET) -> Signal:
     bias = parameters.driver.tracking.lane_bias
     start = parameters.start._replace(lateral_offset=bias + offset)
     rows = rollout(
+        MANUAL,
         parameters._replace(start=start),
         _no_intention(),
         idle_weights(),
@@ -170,7 +170,7 @@ def settling_time(signal: Signal) -> Real:
 def edge_margin(setup: TrialSetup) -> Real:
     """Least distance of a wheel from the road's outer lines in a trial [m]."""
     position = simulate_trial(setup).columns["lateral_position"]
-    road, half = RoadParameters(), CARS[setup.car].width / 2.0
+    road, half = RoadParameters(), trial_car(setup).width / 2.0
     left = road.lane_width / 2.0 - half - position.max()
     right = position.min() - half + (road.num_lanes - 0.5) * road.lane_width
     return float(min(left, right))

@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from costeer.base.array import Real
 from costeer.loop.scenario import TrialSetup
 from costeer.loop.trial import simulate_trial
-from costeer.study.conditions import CONDITION_NAMES, MANUAL, condition
+from costeer.methods.conditions import CONDITION_NAMES, MANUAL, condition
 from costeer.study.definitions import DEFAULTS
 from costeer.study.detection import FALSE
 from costeer.study.trial_measures import Trial, prepare

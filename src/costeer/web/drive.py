@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from costeer.base.packing import packed
+from costeer.methods.conditions import CONDITION_NAMES, condition
 from costeer.methods.registry import METHODS, method_named
 from costeer.plant.parameters import wheelbase
 from costeer.runtime.drive import Drive, Listener
@@ -21,8 +22,7 @@ from costeer.runtime.frame import FRAME_COLUMNS, PLACE
 from costeer.runtime.patience import PAGE_PATIENCE
 from costeer.runtime.setup import PLANT_DT, DriveSetup, drive_parameters
 from costeer.runtime.stream import Marker
-from costeer.runtime.tunables import TUNABLES, checked_value, place_of, tunable_named
-from costeer.study.conditions import CONDITION_NAMES, condition
+from costeer.runtime.tunables import checked_value, place_of, tunable_named
 from costeer.web.messages import (
     ChooseCondition,
     ChooseMethod,
@@ -86,7 +86,11 @@ class DriveOnPages:
         self._condition = setup.trial.condition
         self._method = setup.method
         values = packed(drive_parameters(setup))
-        self._values = {t.name: float(values[place_of(t)]) for t in TUNABLES}
+        self._loop_method = drive_method(setup)
+        self._values = {
+            t.name: float(values[place_of(self._loop_method, t)])
+            for t in self._loop_method.tunables
+        }
         self.drive = Drive(setup, record, Listener(self._tell, self._mark))
 
     def also(
@@ -147,7 +151,7 @@ class DriveOnPages:
                 "value": self._values[each.name],
                 "label": each.label,
             }
-            for each in TUNABLES
+            for each in self._loop_method.tunables
         ]
 
     def hello(self, role: Role) -> dict[str, object]:
@@ -202,7 +206,9 @@ class DriveOnPages:
             ValueError: If name or value cannot be.
         """
         if isinstance(message, Set):
-            value = checked_value(tunable_named(message.name), message.value)
+            value = checked_value(
+                tunable_named(self._loop_method, message.name), message.value
+            )
             self.drive.send("set", message.name, value)
         elif isinstance(message, ChooseCondition):
             self.drive.send("condition", condition(message.name).name)

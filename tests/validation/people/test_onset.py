@@ -9,7 +9,7 @@ import pytest
 
 from costeer.drivers.driver import NORMAL_DRAWS, DriverNoise, DriverParameters
 from costeer.drivers.population import hands_off, participant_driver
-from costeer.loop.step import DT
+from costeer.loop.parameters import DT
 from costeer.validation.people.onset import (
     SPEED,
     Correction,

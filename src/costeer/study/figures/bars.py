@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
-from costeer.study.conditions import MANUAL, condition
+from costeer.methods.conditions import MANUAL, condition
 from costeer.study.figures.exhibit import Exhibit, not_drawn
 from costeer.study.figures.style import (
     COLUMN_WIDTH_MM,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from costeer.study.conditions import STRENGTHS
+from costeer.methods.conditions import STRENGTHS
 from costeer.study.figures import (
     bars,
     detection,

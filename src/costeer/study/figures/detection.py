@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
-from costeer.study.conditions import condition
+from costeer.methods.conditions import condition
 from costeer.study.figures.exhibit import Exhibit, not_drawn
 from costeer.study.figures.style import (
     FAINT,

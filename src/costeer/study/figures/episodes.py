@@ -8,8 +8,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from costeer.methods.conditions import MANUAL
 from costeer.records.record import read_record
-from costeer.study.conditions import MANUAL
 from costeer.study.inconsistencies import Inconsistency, find_inconsistencies
 
 LONGEST_LEAD = 8.0

@@ -10,8 +10,8 @@ from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
+from costeer.methods.conditions import MANUAL, condition
 from costeer.records.record import read_record
-from costeer.study.conditions import MANUAL, condition
 from costeer.study.crossings import RIGHT
 from costeer.study.figures.episodes import falls, rises
 from costeer.study.figures.exhibit import Exhibit, not_drawn

@@ -16,7 +16,7 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
 
-from costeer.study.conditions import condition
+from costeer.methods.conditions import condition
 
 COLUMN_WIDTH_MM = 88.0
 FULL_WIDTH_MM = 180.0

@@ -10,8 +10,8 @@ from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
+from costeer.methods.conditions import CONDITIONS, DURATIONS, MANUAL
 from costeer.records.record import read_record
-from costeer.study.conditions import CONDITIONS, DURATIONS, MANUAL
 from costeer.study.crossings import LEFT, RIGHT
 from costeer.study.figures.exhibit import Exhibit, not_drawn
 from costeer.study.figures.style import (

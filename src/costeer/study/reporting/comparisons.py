@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from costeer.study.conditions import MANUAL
+from costeer.methods.conditions import MANUAL
 from costeer.study.material import (
     StudyMaterial,
     conditions_driven,

@@ -6,7 +6,7 @@ import math
 
 import pandas as pd
 
-from costeer.study.conditions import MANUAL
+from costeer.methods.conditions import MANUAL
 from costeer.study.material import StudyMaterial, conditions_driven
 from costeer.study.reporting.numerals import NOTHING, count, number, percent
 from costeer.study.reporting.overview import tallies, total, weighted

@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from costeer.study.conditions import MANUAL
+from costeer.methods.conditions import MANUAL
 from costeer.study.material import StudyMaterial, summary
 from costeer.study.outcome import PUBLISHED, WITHIN
 from costeer.study.quantities import BY_STRENGTH, Quantity

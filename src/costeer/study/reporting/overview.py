@@ -7,8 +7,8 @@ from typing import NamedTuple
 
 import pandas as pd
 
+from costeer.methods.conditions import CONDITION_NAMES
 from costeer.plant.traffic import TrafficParameters
-from costeer.study.conditions import CONDITION_NAMES
 from costeer.study.material import (
     StudyMaterial,
     conditions_driven,

@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from costeer.study.conditions import MANUAL
+from costeer.methods.conditions import MANUAL
 from costeer.study.material import (
     StudyMaterial,
     conditions_driven,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pandas as pd
 
-from costeer.study.conditions import MANUAL
+from costeer.methods.conditions import MANUAL
 from costeer.study.definitions import DEFAULTS
 from costeer.study.detection import EARLY, FALSE, TRUE
 from costeer.study.material import StudyMaterial, conditions_driven

@@ -10,26 +10,22 @@ largest angle. They count the frame in which the line appears as the first.
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from scipy.signal import savgol_filter
 
 from costeer.base.array import Real
 from costeer.controller.actuation import ActuationParameters
+from costeer.controller.signals import Request
 from costeer.controller.step import ControllerParameters
 from costeer.drivers.driver import DriverNoise, DriverParameters
 from costeer.drivers.population import participant_driver
 from costeer.loop.noise import driver_noise
-from costeer.loop.step import (
-    DT,
-    LoopParameters,
-    LoopState,
-    StartParameters,
-    initial_state,
-    sense,
-    step,
-)
+from costeer.loop.parameters import DT, LoopParameters, StartParameters
+from costeer.loop.step import LoopState, initial_state, sense, step
+from costeer.methods.interface import rule_of
+from costeer.methods.manual import MANUAL
 from costeer.validation.people.findings import Values
 from costeer.validation.people.leeds import HEADINGS
 
@@ -106,22 +102,23 @@ def steering_onset(
     """
     parameters = LoopParameters(
         driver=driver,
-        controller=ControllerParameters()._replace(
+        controller=ControllerParameters(
             actuation=ActuationParameters(strength_factor=0.0)
         ),
         start=StartParameters(speed=speed, lateral_offset=0.0, events=0.0),
     )
-    state = _turned(initial_state(parameters), heading_error)
+    rule = rule_of(MANUAL)
+    state = _turned(initial_state(rule, parameters), heading_error)
     angles = [state.world.column.steering_wheel_angle]
     for row in noise[:-1]:
         now = DriverNoise(*map(float, row))
         seen = sense(parameters, state)
-        state, _ = step(parameters, state, seen, math.nan, False, now)
+        state, _ = step(rule, parameters, state, seen, Request(), now)
         angles.append(state.world.column.steering_wheel_angle)
     return correction(-math.copysign(1.0, heading_error) * np.array(angles))
 
 
-def _turned(state: LoopState, yaw_angle: Real) -> LoopState:
+def _turned(state: LoopState[Any], yaw_angle: Real) -> LoopState[Any]:
     """The same state with another yaw [rad]."""
     vehicle = state.world.vehicle._replace(yaw_angle=yaw_angle)
     return state._replace(world=state.world._replace(vehicle=vehicle))

@@ -95,3 +95,66 @@ def _unknown(name: str) -> str:
     near = difflib.get_close_matches(name, CONDITION_NAMES, n=1)
     guess = f" (did you mean {near[0]}?)" if near else ""
     return f"unknown condition {name!r}{guess}; choose from {', '.join(_BY_NAME)}"
+
+
+def completed(
+    name: str, strength_factor: float = math.nan, change_duration: float = math.nan
+) -> Condition:
+    """The condition that a trial is driven under.
+
+    Args:
+        name: Of Table IV, or another one with a strength of its own.
+        strength_factor: On K_h; NaN: as the condition says [-].
+        change_duration: ΔT_LC; NaN: as the condition says, else the method's own [s].
+
+    Raises:
+        ValueError: If the name is not known and has no strength, looks like a known
+            one that is misspelt, or values contradict the known condition.
+    """
+    if name in _BY_NAME:
+        return _not_contradicted(_BY_NAME[name], strength_factor, change_duration)
+    if math.isnan(strength_factor):
+        raise ValueError(
+            f"{_unknown(name)}; or give a condition of your own a strength_factor"
+        )
+    if difflib.get_close_matches(name, CONDITION_NAMES, n=1, cutoff=_MISSPELT):
+        raise ValueError(_unknown(name))
+    if not 0.0 <= strength_factor <= 1.0:
+        raise ValueError(
+            f"strength_factor is {strength_factor:g}; give a number from 0 to 1"
+        )
+    _check_duration(change_duration)
+    strength = "" if strength_factor > 0.0 else MANUAL
+    return Condition(name, strength, "", strength_factor, change_duration)
+
+
+_MISSPELT = 0.85
+"""Likeness to a known name from which a name is taken for a slip."""
+
+
+def _not_contradicted(
+    known: Condition, strength_factor: float, change_duration: float
+) -> Condition:
+    """A condition of Table IV, if what is said besides says the same.
+
+    Raises:
+        ValueError: If not.
+    """
+    said = (
+        ("strength_factor", strength_factor, known.strength_factor),
+        ("change_duration", change_duration, known.change_duration),
+    )
+    for name, value, own in said:
+        if not (math.isnan(value) or value == own):
+            raise ValueError(
+                f"condition {known.name} has {name} {own:g}, not {value:g}; leave "
+                f"{name} out, or give the condition a name of its own"
+            )
+    return known
+
+
+def _check_duration(change_duration: float) -> None:
+    if not (math.isnan(change_duration) or 1.0 <= change_duration <= 30.0):
+        raise ValueError(
+            f"change_duration is {change_duration:g}; give a number from 1 to 30 s"
+        )

@@ -6,7 +6,7 @@ import math
 
 import pytest
 
-from costeer.study.conditions import (
+from costeer.methods.conditions import (
     CONDITION_NAMES,
     check_conditions,
     condition,

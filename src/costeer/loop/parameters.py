@@ -1,0 +1,61 @@
+"""Everything that one trial needs besides random numbers."""
+
+from __future__ import annotations
+
+from typing import Generic, NamedTuple, TypeVar
+
+from costeer.base.array import Real
+from costeer.drivers.driver import DriverParameters
+from costeer.plant.parameters import CarParameters, ColumnParameters, RoadParameters
+from costeer.plant.traffic import TrafficParameters
+from costeer.sensing.sensors import SensorParameters
+
+P = TypeVar("P")
+
+DT = 1.0 / 60.0
+"""Control step [s]."""
+
+
+class StartParameters(NamedTuple):
+    """How a trial begins.
+
+    Attributes:
+        speed: Of the car [m/s]. Source: paper, about 70 km/h.
+        lateral_offset: From the centre of the cruising lane [m]. Source: assumed, 0.
+        events: 1 with leaders to overtake, 0 without [-]. Source: paper.
+    """
+
+    speed: Real = 70.0 / 3.6
+    lateral_offset: Real = 0.0
+    events: Real = 1.0
+
+
+class LoopParameters(NamedTuple, Generic[P]):
+    """Everything that one trial needs besides random numbers.
+
+    Attributes:
+        controller: Of the method [SI units]. Source: the method, methods/.
+        car: Of the plant [SI units]. Source: plant/parameters.py.
+        column: Of the plant [SI units]. Source: plant/parameters.py.
+        road: Lanes [SI units]. Source: plant/parameters.py.
+        traffic: Leaders [SI units]. Source: plant/traffic.py.
+        sensors: Errors [SI units]. Source: sensing/sensors.py.
+        driver: Who holds the wheel [SI units]. Source: drivers/driver.py.
+        start: How the trial begins [SI units]. Source: this file.
+        follows_plan: 1 if the system's lane changes begin and last as the driver plans
+            this one, 0 if as the method says [-]. Source: assumed, for the pilot runs
+            in which nobody disagrees.
+        plant_steps: Plant steps in a control step [-]. Source: assumed, 8 make 480
+            Hz.
+    """
+
+    controller: P
+    car: CarParameters = CarParameters()
+    column: ColumnParameters = ColumnParameters()
+    road: RoadParameters = RoadParameters()
+    traffic: TrafficParameters = TrafficParameters()
+    sensors: SensorParameters = SensorParameters()
+    driver: DriverParameters = DriverParameters()
+    start: StartParameters = StartParameters()
+    follows_plan: Real = 0.0
+    plant_steps: int = 8

@@ -1,0 +1,164 @@
+"""One control step of a trial with its verdict and its row, and the steps in a row.
+
+The same source runs in three engines: compiled by Numba or as plain Python
+(loop/rollout.py), and traced by JAX (loop/jax_rollout.py).
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from costeer.base import array as xp
+from costeer.base.array import Flag, Real, compiled, inlined
+from costeer.base.packing import pack, unpack
+from costeer.controller.signals import Request
+from costeer.drivers.decision import time_to_crossing
+from costeer.drivers.driver import DriverNoise
+from costeer.intention.features import IntentionSample, facing
+from costeer.intention.wavefront import WavefrontState, WavefrontWeights, advance
+from costeer.loop.parameters import DT, LoopParameters
+from costeer.loop.rows import Row, row
+from costeer.loop.step import (
+    LoopState,
+    initial_state,
+    own_duration,
+    planned_to_cross,
+    sense,
+    step,
+)
+from costeer.methods.interface import Rule
+from costeer.sensing.measurement import Measurement
+
+S = TypeVar("S")
+
+INTENTION_OFF = 0
+INTENTION_SCRIPTED = 1
+INTENTION_NETWORK = 2
+
+REQUEST_DURATION = 0.1
+"""How long a requested lane change stays requested [s]."""
+
+PREDICTION_HORIZON = 3.0
+"""g of Eq. (2): the network predicts a crossing within this time [s]."""
+
+_NOISE = DriverNoise(*([0.0] * len(DriverNoise._fields)))
+
+
+class Script(NamedTuple):
+    """Where the crossing probability comes from.
+
+    Attributes:
+        intention: `INTENTION_OFF`, `INTENTION_SCRIPTED` or `INTENTION_NETWORK`.
+        horizon: A scripted verdict is positive when the driver's own plan crosses the
+            line within this time [s].
+        trigger_times: When a lane change is requested, shape `(request,)` [s].
+    """
+
+    intention: int
+    horizon: Real
+    trigger_times: NDArray[np.float64]
+
+
+@compiled
+def intention_sample(measurement: Measurement) -> IntentionSample:
+    """Eq. (1): the six signals, mirrored so that the adjacent lane is on the right.
+
+    Of a head that the tracker has lost the network is told so.
+    """
+    seen = xp.select(measurement.head_yaw_valid, measurement.head_yaw, math.nan)
+    sample = IntentionSample(
+        head_yaw=seen,
+        longitudinal_acceleration=measurement.longitudinal_acceleration,
+        longitudinal_velocity=measurement.longitudinal_velocity,
+        steering_wheel_angle=measurement.steering_wheel_angle,
+        distance_to_adjacent_lane=measurement.distance_to_adjacent_lane,
+        yaw_angle=measurement.yaw_angle,
+    )
+    return facing(sample, measurement.side)
+
+
+@compiled
+def scripted_probability(
+    parameters: LoopParameters[Any], state: LoopState[S], horizon: Real
+) -> Real:
+    """1 while the driver's own plan crosses the line within `horizon` [s], else 0.
+
+    A system that follows the plan begins when the driver does, half the planned
+    duration before the crossing.
+    """
+    plan = state.driver.decision
+    begins = xp.select(
+        parameters.follows_plan > 0.5, plan.change_duration / 2.0, horizon
+    )
+    return xp.select(planned_to_cross(time_to_crossing(plan), begins), 1.0, 0.0)
+
+
+@compiled
+def requested(trigger_times: NDArray[np.float64], time: Real) -> Flag:
+    """Whether a lane change is requested at `time` [s]."""
+    asked = False
+    for i in range(len(trigger_times)):
+        since = time - trigger_times[i] + 0.5 * DT
+        asked = asked | ((since >= 0.0) & (since < REQUEST_DURATION))
+    return asked
+
+
+@inlined
+def tick(
+    rule: Rule[Any, S],
+    parameters: LoopParameters[Any],
+    state: LoopState[S],
+    script: Script,
+    weights: WavefrontWeights,
+    memory: WavefrontState,
+    noise: DriverNoise,
+) -> tuple[LoopState[S], Row]:
+    """One control step with its sample, its verdict and its row."""
+    measurement = sense(parameters, state)
+    probability = math.nan
+    if script.intention == INTENTION_SCRIPTED:
+        probability = scripted_probability(parameters, state, script.horizon)
+    if script.intention == INTENTION_NETWORK:
+        probability = advance(weights, memory, intention_sample(measurement))
+    request = Request(
+        crossing_probability=probability,
+        requested=requested(script.trigger_times, state.control.time),
+        change_duration=own_duration(parameters, state),
+    )
+    new_state, sample = step(rule, parameters, state, measurement, request, noise)
+    return new_state, row(sample)
+
+
+@compiled
+def run(
+    rule: Rule[Any, S],
+    parameters: LoopParameters[Any],
+    script: Script,
+    weights: WavefrontWeights,
+    memory: WavefrontState,
+    noise: NDArray[np.float64],
+    rows: NDArray[np.float64],
+) -> int:
+    """Fill `rows` until the road or the noise ends; return how many were filled.
+
+    Args:
+        rule: The method's functions.
+        parameters: Of the trial.
+        script: Where the crossing probability comes from.
+        weights: Of the network.
+        memory: Of the network, changed in place.
+        noise: Random numbers, shape `(time, draw)`.
+        rows: Filled in the order of `ROW_COLUMNS`, shape `(time, column)`.
+    """
+    state = initial_state(rule, parameters)
+    for k in range(len(noise)):
+        drawn = unpack(_NOISE, noise[k])
+        state, filled = tick(rule, parameters, state, script, weights, memory, drawn)
+        pack(rows[k], filled)
+        if state.world.vehicle.longitudinal_position >= parameters.road.length:
+            return k + 1
+    return len(noise)
