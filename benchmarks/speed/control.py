@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
+from benchmarks.speed.limit import measure_limit
+from benchmarks.speed.timing import Effort, Figure, Outcome, Skipped, percentiles
+from benchmarks.speed.verdicts import SIZES, measure_verdict
 from costeer.base.packing import pack
-from costeer.bench.limit import measure_limit
-from costeer.bench.timing import Effort, Figure, Outcome, Skipped, percentiles
-from costeer.bench.verdicts import SIZES, measure_verdict
 from costeer.controller.realtime import ControlInput, control_step, packed_controller
 from costeer.intention.gru import hidden_size, random_weights
 from costeer.loop import step as loop

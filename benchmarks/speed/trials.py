@@ -8,7 +8,7 @@ from functools import partial
 
 import numpy as np
 
-from costeer.bench.timing import Effort, Outcome, Skipped, figure, seconds_of
+from benchmarks.speed.timing import Effort, Outcome, Skipped, figure, seconds_of
 from costeer.intention.wavefront import initial_state
 from costeer.loop.jax_rollout import jax_rollouts
 from costeer.loop.noise import driver_noise
