@@ -1,6 +1,6 @@
 """Known drivers fitted: how often the 95 % interval holds the truth, and why not more.
 
-    python benchmarks/driver_recovery.py [--drivers 100] [--seed 77] [--jobs 2]
+    python -m benchmarks.driver_recovery [--drivers 100] [--seed 77] [--jobs 2]
 
 The first table counts, per parameter of the identifiable set, the fits whose interval
 holds the true value. The second adds to that set one parameter that a fit holds at its

@@ -1,6 +1,6 @@
 """Whether virtual drivers swing or leave the road, over a population.
 
-    python benchmarks/driver_stability.py [DRIVERS]
+    python -m benchmarks.driver_stability [DRIVERS]
 
 Prints, for 1000 drivers of one seed in the default car at 70 km/h and for a smaller
 sample in all cars at 50 to 110 km/h: least damping ratio of the linear loop with its
@@ -53,7 +53,7 @@ def line(found: Stability) -> str:
 def main() -> int:
     """Print the table and the least damped driver; return the exit code."""
     number = int(sys.argv[1]) if len(sys.argv) > 1 else NUM_DRIVERS
-    print("python benchmarks/driver_stability.py")
+    print("python -m benchmarks.driver_stability")
     print(f"drivers of seed {SEED}\n{HEADER}")
     every = [driver_stability(SEED, number)]
     print(line(every[0]), flush=True)

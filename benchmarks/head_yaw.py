@@ -1,6 +1,6 @@
 """The webcam tracker on rendered faces: error, jitter, losses and time per picture.
 
-    python benchmarks/head_yaw.py
+    python -m benchmarks.head_yaw
 
 Two face shapes, each held in three ways, turned by -60 to 60 deg in steps of 5. Each
 face is calibrated once, held straight, by looks at 0, +30 and -30 deg, and moves
@@ -18,7 +18,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from costeer.bench.machine import load, processor_name
+from benchmarks.speed.machine import load, processor_name
 from costeer.devices.head import face, tracker
 from costeer.devices.head.calibration import (
     FitParameters,

@@ -1,6 +1,6 @@
 """What a hold time on the verdict of Table III would change, on pilot drivers.
 
-    python benchmarks/hold_time.py
+    python -m benchmarks.hold_time
 
 Literal Table III may flip when a torque crosses zero, and each flip restarts the fade
 of Eqs. (10) and (11). Pilot drivers drive the six assisted conditions with hold times
@@ -38,7 +38,7 @@ def setups(hold_time: float) -> list[TrialSetup]:
             strength_factor=strength,
             change_duration=duration,
             intention="scripted",
-            hold_time=hold_time,
+            parameters=(("consistency.hold_time", hold_time),),
         )
         for participant in range(1, NUM_DRIVERS + 1)
         for strength in (STRONG, WEAK)

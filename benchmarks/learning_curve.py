@@ -1,6 +1,6 @@
 """Would more drivers, or a larger network, tell more? The plateau is the limit.
 
-    python benchmarks/learning_curve.py [--drivers N] [--steps N] [--hidden N]
+    python -m benchmarks.learning_curve [--drivers N] [--steps N] [--hidden N]
 
 Trains the network of all six signals on 1/16, 1/8, 1/4, 1/2 and all of the training
 drivers of `costeer train --simulate N`, and prints what the validation drivers, always

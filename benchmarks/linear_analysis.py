@@ -1,6 +1,6 @@
 """Poles and margins of the closed loop without hands, and their figure.
 
-    python benchmarks/linear_analysis.py [FIGURE.svg]
+    python -m benchmarks.linear_analysis [FIGURE.svg]
 
 Prints for three cars and four speeds, strong guidance: smallest damping ratio, gain
 margin and delay margin, without friction compensation and with its slope at zero; then
@@ -24,6 +24,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import FormatStrFormatter
 
+from benchmarks.hands_off import hands_off_setup
 from costeer.loop.scenario import loop_parameters
 from costeer.plant.parameters import CARS
 from costeer.study.figures.style import (
@@ -37,7 +38,6 @@ from costeer.study.figures.style import (
     styled,
     svg_text,
 )
-from costeer.validation.hands_off import SPEEDS, hands_off_setup
 from costeer.validation.linear import (
     LinearLoop,
     damping_ratio,
@@ -46,6 +46,7 @@ from costeer.validation.linear import (
     largest_modulus,
     linear_loop,
 )
+from costeer.validation.stability import SPEEDS
 
 GAINS = np.geomspace(0.02, 1.0, 25)
 """Haptic gains of the table's worst case [-]."""
@@ -178,7 +179,7 @@ def drawn(every: dict[Case, LinearLoop]) -> Figure:
 def main() -> int:
     """Print, draw, and return 1 if a loop that should be stable is not."""
     every = loops(SPEEDS)
-    print("python benchmarks/linear_analysis.py")
+    print("python -m benchmarks.linear_analysis")
     print_table(every)
     if len(sys.argv) > 1:
         title = "Gain margin and delay margin of the closed loop without hands"

@@ -1,6 +1,6 @@
 """The paper's network under the paper's split by time, and under a split by driver.
 
-    python benchmarks/paper_split.py [--steps N] [--trials N] [--seed N] [--json FILE]
+    python -m benchmarks.paper_split [--steps N] [--trials N] [--seed N] [--json FILE]
 
 Nine virtual drivers, each at several manual trials. By time: the last 30 minutes of
 three drivers test, the rest of the same drivers trains. By driver: the same minutes
@@ -17,7 +17,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from costeer.training.splits import PAPER, compare_splits, paper_recordings
+from benchmarks.splits import PAPER, compare_splits, paper_recordings
 
 PUBLISHED = 0.948
 """Accuracy of the paper's network. Source: the paper."""

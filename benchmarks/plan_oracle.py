@@ -1,6 +1,6 @@
 """What one could know who knew the driver's plan: a limit that no signal reaches.
 
-    python benchmarks/plan_oracle.py [--drivers N] [--seed N]
+    python -m benchmarks.plan_oracle [--drivers N] [--seed N]
 
 The oracle says yes while the plan of the virtual driver crosses the line within 3 s. It
 errs where the car crosses sooner or later than planned, and where a planned change is

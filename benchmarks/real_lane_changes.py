@@ -1,6 +1,6 @@
 """The intention network on people it has never seen, beside its rivals.
 
-    python benchmarks/real_lane_changes.py --data FOLDER [SET ...]
+    python -m benchmarks.real_lane_changes --data FOLDER [SET ...]
 
 FOLDER holds the sets of docs/datasets.md. Everything but the last two rows of each
 table learned from virtual drivers only; the last two learned from other vehicles of the
@@ -11,12 +11,183 @@ are to the network as it ships. Needs the extra `train`; some minutes.
 from __future__ import annotations
 
 import argparse
+from collections.abc import Callable, Sequence
+from functools import partial
 from pathlib import Path
 
+import numpy as np
+from numpy.typing import NDArray
+
+from costeer.intention.features import full_windows
+from costeer.intention.gru import NetworkWeights
+from costeer.intention.predictors.gru import our_probabilities
+from costeer.intention.predictors.interface import Probabilities
+from costeer.intention.predictors.registry import fitted_predictor, predictor
 from costeer.intention.weights import load_weights
-from costeer.training.comparison import Difference, Judged
+from costeer.training.ablation import variant_of
+from costeer.training.comparison import (
+    Comparison,
+    Contender,
+    Difference,
+    Judged,
+    compare_verdicts,
+    contender,
+)
+from costeer.training.dataset import DatasetParameters
 from costeer.training.datasets.catalogue import read_dataset
-from costeer.validation.intention.transfer import transfer
+from costeer.training.predictors.logistic import DEFAULTS as LOGISTIC
+from costeer.training.predictors.logistic import fit_logistic
+from costeer.training.predictors.samples import feature_scaling, summary_table
+from costeer.training.recordings import Recording
+from costeer.training.tuning import DEFAULTS as TUNING
+from costeer.training.tuning import fine_tuned
+from costeer.training.verdicts import asked
+
+
+def folds(
+    recordings: Sequence[Recording], num: int, seed: int
+) -> list[tuple[list[Recording], list[Recording]]]:
+    """Deal the drivers to folds; each fold is judged once by a network of the others.
+
+    Whole drivers are dealt, those with many samples first, each to the fold that has
+    the fewest so far; the seed orders drivers of equal length.
+
+    Args:
+        recordings: Of at least as many drivers as there are folds.
+        num: Of folds, at least 2.
+        seed: Of the order.
+
+    Returns:
+        For each fold the recordings to train on and those to judge, in the order
+        given.
+
+    Raises:
+        ValueError: If there are fewer than two folds, or fewer drivers than folds.
+    """
+    drivers = sorted({r.driver for r in recordings})
+    if not 2 <= num <= len(drivers):
+        raise ValueError(
+            f"{num} folds of {len(drivers)} driver(s); give at least 2 and not more "
+            "than there are drivers"
+        )
+    length = dict.fromkeys(drivers, 0)
+    for each in recordings:
+        length[each.driver] += len(each.side)
+    order = np.random.default_rng([seed, 3]).permutation(len(drivers))
+    place, held = {}, [0] * num
+    for driver in sorted((drivers[k] for k in order), key=lambda d: -length[d]):
+        place[driver] = held.index(min(held))
+        held[place[driver]] += length[driver]
+    return [
+        (
+            [r for r in recordings if place[r.driver] != fold],
+            [r for r in recordings if place[r.driver] == fold],
+        )
+        for fold in range(num)
+    ]
+
+
+NUM_FOLDS = 4
+RIVALS = ("line-time", "logistic", "crossing-time", "head-only")
+"""Predictors of virtual drivers that can do without head and wheel, or with the head
+alone."""
+
+Learner = Callable[[list[Recording]], Probabilities]
+
+
+def transfer(
+    network: NetworkWeights,
+    recordings: Sequence[Recording],
+    seed: int,
+    num_folds: int = NUM_FOLDS,
+) -> Comparison:
+    """Predictors of virtual drivers and of people, side by side.
+
+    Args:
+        network: Trained on virtual drivers; the reference.
+        recordings: Of people, all with the same signals.
+        seed: Of the folds and of what is learned.
+        num_folds: Into which the drivers are dealt.
+    """
+    ours = asked(partial(our_probabilities, network), recordings)
+    rows = [
+        *(contender(predictor(name), recordings) for name in RIVALS),
+        Contender("gru", "GRU with hidden signals", "", ours),
+        Contender(
+            "logistic-people",
+            "Logistic regression, fitted to people",
+            "",
+            out_of_fold(recordings, num_folds, seed, _logistic),
+        ),
+        Contender(
+            "gru-people",
+            "GRU, fine-tuned to people",
+            "",
+            out_of_fold(recordings, num_folds, seed, partial(_tuned, network, seed)),
+        ),
+    ]
+    return compare_verdicts(rows, recordings, "gru")
+
+
+def out_of_fold(
+    recordings: Sequence[Recording], num_folds: int, seed: int, learn: Learner
+) -> list[NDArray[np.float64]]:
+    """Verdicts on each recording by what learned from the other folds only.
+
+    Args:
+        recordings: Of at least as many drivers as folds.
+        num_folds: Into which the drivers are dealt.
+        seed: Of the folds.
+        learn: From recordings to a predictor.
+    """
+    place = {id(recording): k for k, recording in enumerate(recordings)}
+    found = [np.full(len(recording.side), np.nan) for recording in recordings]
+    for others, held_out in folds(recordings, num_folds, seed):
+        said = asked(learn(others), held_out)
+        for recording, verdicts in zip(held_out, said, strict=True):
+            found[place[id(recording)]] = verdicts
+    return found
+
+
+def _tuned(
+    network: NetworkWeights, seed: int, recordings: list[Recording]
+) -> Probabilities:
+    return partial(our_probabilities, fine_tuned(network, recordings, seed, TUNING))
+
+
+def _logistic(recordings: list[Recording]) -> Probabilities:
+    """Logistic regression; a fourth of the drivers chooses its penalty."""
+    dataset = DatasetParameters()
+    scaling = feature_scaling(recordings)
+    training, choosing = _two_parts(recordings)
+    matching = variant_of(recordings[0].absent)
+    variants = () if matching is None else (matching,)
+    fitted = fit_logistic(
+        summary_table(training, scaling, dataset),
+        summary_table(choosing, scaling, dataset),
+        scaling,
+        LOGISTIC._replace(variants=variants),
+    )
+    return fitted_predictor("logistic", fitted).probabilities
+
+
+def _two_parts(
+    recordings: list[Recording],
+) -> tuple[list[Recording], list[Recording]]:
+    """Drivers to fit and drivers to choose by, with lane changes in both."""
+    for training, choosing in folds(recordings, NUM_FOLDS, 0):
+        if _changes_lanes(training) and _changes_lanes(choosing):
+            return training, choosing
+    return recordings, recordings
+
+
+def _changes_lanes(recordings: Sequence[Recording]) -> bool:
+    """Whether some full window precedes a crossing."""
+    return any(
+        bool((full_windows(r.features, r.absent) & r.labels.positive)[::6].any())
+        for r in recordings
+    )
+
 
 SETS = ("ngsim_lc", "ngsim_commonroad", "r3_driving", "brain4cars_head")
 SEED = 1

@@ -1,6 +1,6 @@
 """What the real sets hold, as the network sees them.
 
-    python benchmarks/real_sets.py --data FOLDER [SET ...]
+    python -m benchmarks.real_sets --data FOLDER [SET ...]
 
 A run is the view to one side, so hours and kilometres of runs count a road with lanes
 on both sides twice. Judged are samples with a full window and a known answer; before

@@ -1,6 +1,6 @@
 """The inconsistency threshold when path and plan differ in duration.
 
-    python benchmarks/threshold.py
+    python -m benchmarks.threshold
 
 `costeer drivers --threshold` gives the system's path the duration that the pilot
 driver plans for this very lane change. Here the same drivers are driven once so, and

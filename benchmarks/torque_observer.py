@@ -1,6 +1,6 @@
 """How well the observer tells the driver's torque, and the self-test the wheel.
 
-    python benchmarks/torque_observer.py [--data FOLDER]
+    python -m benchmarks.torque_observer [--data FOLDER]
 
 Simulated devices are drawn, calibrated, and held against the truth. Each then drives a
 trial with the torque that a virtual driver had and some stiffness besides; the observer
@@ -21,6 +21,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from benchmarks.column_fit import fit_column
 from costeer.controller.actuation import STRONG
 from costeer.devices.wheels.calibration import (
     WheelCalibration,
@@ -33,7 +34,6 @@ from costeer.devices.wheels.simulated import (
     SimulatedWheelParameters,
     true_calibration,
 )
-from costeer.identification.column import fit_column
 from costeer.loop.scenario import PILOT_SEED, TrialSetup
 from costeer.loop.trial import simulate_trial
 from costeer.plant.parameters import ColumnParameters

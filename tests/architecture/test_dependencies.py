@@ -20,6 +20,8 @@ PEERS = {
 }
 """Modules of the extra `bench`, which need not be installed, and what brings them."""
 
+OWN = {"benchmarks", "costeer", "tests"}
+
 COMES_WITH = {"llvmlite": "numba", "markupsafe": "jinja2"}
 """Imported packages that another one is made of and pins itself."""
 
@@ -33,9 +35,9 @@ def named(requirements: list[str]) -> set[str]:
 
 
 def imported() -> Iterator[str]:
-    """Names of the distributions that the package imports, anywhere in a file."""
+    """Names of the distributions that package and benchmarks import, anywhere."""
     owners = packages_distributions()
-    for file in files():
+    for file in [*files(), *files(ROOT / "benchmarks")]:
         for node in ast.walk(tree(file)):
             names = []
             if isinstance(node, ast.Import):
@@ -43,7 +45,7 @@ def imported() -> Iterator[str]:
             elif isinstance(node, ast.ImportFrom) and node.module:
                 names = [node.module]
             for top in {name.partition(".")[0] for name in names}:
-                if top not in sys.stdlib_module_names and top != "costeer":
+                if top not in sys.stdlib_module_names | OWN:
                     yield PEERS.get(top) or owners.get(top, [top])[0].lower()
 
 

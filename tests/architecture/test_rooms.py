@@ -8,7 +8,7 @@ from pathlib import Path
 
 from tests.architecture.source import PACKAGE, files, tree
 
-RIM = {"cli", "bench", "devices", "doctor", "runtime", "web", "__main__"}
+RIM = {"cli", "devices", "doctor", "runtime", "web", "__main__"}
 """Rooms with a clock, devices and printing."""
 
 CLOCKS = {"time", "datetime", "random", "secrets"}

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import json
+from pathlib import Path
 
 import pytest
 
-from costeer.bench.timing import FULL, QUICK, Effort, Figure, Outcome, Skipped
+from benchmarks.speed.timing import FULL, QUICK, Effort, Figure, Outcome, Skipped
 from costeer.cli import bench, main
 
 ASKED: list[Effort] = []
@@ -47,6 +48,17 @@ def test_json_holds_the_same(capsys: pytest.CaptureFixture[str]) -> None:
     assert ASKED == [QUICK]
 
 
+def test_an_install_without_benchmarks_says_where_they_are(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(bench, "CHECKOUT", tmp_path)
+    assert main(["bench", "--quick"]) == 2
+    told = capsys.readouterr().err
+    assert str(tmp_path) in told
+    assert "clone the repository" in told
+    assert ASKED == []
+
+
 def test_every_group_is_measured_once_in_its_order(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -64,7 +76,7 @@ def test_every_group_is_measured_once_in_its_order(
             asked.append((place, effort))
             return [Skipped("", place, "")]
 
-        monkeypatch.setattr(f"costeer.bench.{place}", measure)
+        monkeypatch.setattr(f"benchmarks.speed.{place}", measure)
     outcome = MEASURED(QUICK)
     assert [(found.name, QUICK) for found in outcome] == asked
     assert len(asked) == 6

@@ -11,9 +11,9 @@ import csv
 import io
 from pathlib import Path
 
+from benchmarks.hands_off import OFFSET, hands_off_setup
 from costeer.loop.scenario import TrialSetup
 from costeer.loop.trial import simulate_trial
-from costeer.validation.hands_off import OFFSET, hands_off_setup
 
 FILE = Path(__file__).with_name("hands_off_reference.csv")
 EVERY = 30

@@ -9,9 +9,7 @@ from functools import cache
 import numpy as np
 import pytest
 
-from costeer.loop.trial import simulate_trial
-from costeer.plant.parameters import CARS
-from costeer.validation.hands_off import (
+from benchmarks.hands_off import (
     SPEEDS,
     Bounds,
     HandsOffFigures,
@@ -20,6 +18,8 @@ from costeer.validation.hands_off import (
     hands_off_setup,
     missed_bounds,
 )
+from costeer.loop.trial import simulate_trial
+from costeer.plant.parameters import CARS
 from tests.closed_loop.make_hands_off_reference import FILE, SIGNALS, reference_rows
 
 CASES = [(car, speed) for car in sorted(CARS) for speed in SPEEDS]

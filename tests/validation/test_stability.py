@@ -26,8 +26,8 @@ from costeer.validation.driver_loop import (
     smooth,
     transition,
 )
-from costeer.validation.hands_off import SPEEDS
 from costeer.validation.stability import (
+    SPEEDS,
     Signal,
     Stability,
     StabilityBounds,

@@ -19,7 +19,7 @@ import pytest
 from numpy.typing import NDArray
 from playwright.sync_api import Page, sync_playwright
 
-from costeer.bench.drive import CHROMIUM
+from benchmarks.speed.pace import CHROMIUM
 from costeer.web.pages import static_folder
 
 NAMES = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")

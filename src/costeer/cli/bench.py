@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import sys
+from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
@@ -12,10 +14,13 @@ from costeer.cli.validate import in_range
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from costeer.bench.timing import Effort, Figure, Outcome, Skipped
+    from benchmarks.speed.timing import Effort, Figure, Outcome, Skipped
 
 
 _VERDICT = "verdict, "
+
+CHECKOUT = Path(__file__).parents[3]
+"""Where `benchmarks` lies beside `src`, unless costeer was installed without it."""
 
 
 def bench(
@@ -37,19 +42,20 @@ def bench(
 ) -> None:
     """Measure the speed of the control step, a trial, a batch or a drive.
 
-    Each number is the median of some rounds, with the lowest and the highest. Peers
-    come with: pip install 'costeer[bench]'.
+    Each number is the median of some rounds, with the lowest and the highest. Runs in
+    a clone of the repository; peers come with: pip install 'costeer[bench]'.
 
     Example:
         costeer bench
         costeer bench --quick --json
         costeer bench --drive --seconds 600 --browser /usr/bin/chromium
     """
+    _find_benchmarks()
     if drive:
         _bench_drive(seconds, browser, json)
         return
-    from costeer.bench.machine import machine
-    from costeer.bench.timing import FULL, QUICK, Figure
+    from benchmarks.speed.machine import machine
+    from benchmarks.speed.timing import FULL, QUICK, Figure
 
     about = machine()
     outcome = _measure(QUICK if quick else FULL)
@@ -61,10 +67,26 @@ def bench(
         _print_text(about, figures, skipped)
 
 
+def _find_benchmarks() -> None:
+    """Let the folder `benchmarks` of the checkout be imported.
+
+    Raises:
+        ValueError: If there is none: it is no part of what pip installs.
+    """
+    if not (CHECKOUT / "benchmarks" / "speed").is_dir():
+        raise ValueError(
+            f"there is no folder benchmarks in {CHECKOUT}: what is measured comes with "
+            "the sources, not with the installed package; clone the repository and run "
+            "'make bench' there"
+        )
+    if str(CHECKOUT) not in sys.path:
+        sys.path.insert(0, str(CHECKOUT))
+
+
 def _bench_drive(seconds: float, browser: str, as_json: bool) -> None:
     """Drive for so long, print what kept its time and what did not."""
-    from costeer.bench.drive import figures, measure_drive
-    from costeer.bench.machine import machine
+    from benchmarks.speed.machine import machine
+    from benchmarks.speed.pace import figures, measure_drive
 
     about = machine()
     note(f"driving for {seconds:g} s")
@@ -85,10 +107,10 @@ def _bench_drive(seconds: float, browser: str, as_json: bool) -> None:
 
 def _measure(effort: Effort) -> Outcome:
     """Everything, group by group."""
-    from costeer.bench.control import measure_control_step, measure_network
-    from costeer.bench.peers import measure_peers
-    from costeer.bench.start import measure_start
-    from costeer.bench.trials import measure_engines, measure_trials
+    from benchmarks.speed.control import measure_control_step, measure_network
+    from benchmarks.speed.peers import measure_peers
+    from benchmarks.speed.start import measure_start
+    from benchmarks.speed.trials import measure_engines, measure_trials
 
     groups: dict[str, Callable[[Effort], Outcome]] = {
         "control step": measure_control_step,

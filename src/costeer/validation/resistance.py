@@ -24,11 +24,13 @@ from costeer.loop.parameters import DT
 from costeer.loop.scenario import PILOT_SEED, TrialSetup, trial_car
 from costeer.loop.trial import simulate_trial
 from costeer.plant.parameters import RoadParameters
-from costeer.validation.hands_off import CHANGE_DURATIONS
 from costeer.validation.pilot import UNDISPUTED
 from costeer.validation.threads import in_threads
 
 Columns = dict[str, NDArray[Any]]  # Any: as a record's
+
+CHANGE_DURATIONS = (4.0, 6.0, 8.0)
+"""Rapid, normal and gentle lane changes [s]."""
 
 SYSTEMS = ("fades out", "never yields")
 """The real system, and one whose verdict is never inconsistent."""

@@ -39,10 +39,12 @@ from costeer.validation.driver_loop import (
     smooth,
     transition,
 )
-from costeer.validation.hands_off import SPEEDS, amplitude
 from costeer.validation.threads import in_threads
 
 Signal = NDArray[np.float64]
+
+SPEEDS = (50.0 / 3.6, 70.0 / 3.6, 90.0 / 3.6, 110.0 / 3.6)
+"""Speeds of the figures [m/s]."""
 
 OFFSET = 0.5
 """Distance from the aim that a run without noise starts with [m]."""
@@ -102,6 +104,11 @@ class Stability(NamedTuple):
     swing_ratio: Signal
     hunting: Signal
     edge_margin: Signal
+
+
+def amplitude(signal: NDArray[np.float64]) -> Real:
+    """Half of the span of a signal."""
+    return float(np.ptp(signal)) / 2.0
 
 
 def manual_setup(

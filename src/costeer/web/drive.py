@@ -20,7 +20,7 @@ from costeer.plant.parameters import wheelbase
 from costeer.runtime.drive import Drive, Listener
 from costeer.runtime.frame import FRAME_COLUMNS, PLACE
 from costeer.runtime.patience import PAGE_PATIENCE
-from costeer.runtime.setup import PLANT_DT, DriveSetup, drive_parameters
+from costeer.runtime.setup import PLANT_DT, DriveSetup, drive_method, drive_parameters
 from costeer.runtime.stream import Marker
 from costeer.runtime.tunables import checked_value, place_of, tunable_named
 from costeer.web.messages import (

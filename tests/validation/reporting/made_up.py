@@ -10,12 +10,11 @@ from costeer.validation.arms import FREQUENCIES, PUBLISHED, TASKS, ArmTest
 from costeer.validation.departures import LaneHold, departures
 from costeer.validation.drawn import drawn_drivers
 from costeer.validation.drawn_figure import Population
-from costeer.validation.hands_off import CHANGE_DURATIONS
 from costeer.validation.manual import PLANNED_CHANGES, ManualDriving, Row
 from costeer.validation.people.compare import Spectra
 from costeer.validation.people.findings import RealComparison
 from costeer.validation.reporting.evidence import Evidence
-from costeer.validation.resistance import SYSTEMS, Resistance
+from costeer.validation.resistance import CHANGE_DURATIONS, SYSTEMS, Resistance
 from costeer.validation.spread import target_spreads
 from costeer.validation.stability import Stability
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from costeer.bench.drive import CHROMIUM
+from benchmarks.speed.pace import CHROMIUM
 from tests.web.browser import chromium as chromium_path
 
 if TYPE_CHECKING:

@@ -18,7 +18,6 @@ from costeer.validation.departures import (
 )
 from costeer.validation.drawn import drawn_drivers
 from costeer.validation.drawn_figure import Population
-from costeer.validation.hands_off import CHANGE_DURATIONS
 from costeer.validation.manual import (
     AGAIN,
     ManualDriving,
@@ -36,7 +35,7 @@ from costeer.validation.people.compare import (
 from costeer.validation.people.findings import RealComparison
 from costeer.validation.people.observe import Observations, observe
 from costeer.validation.people.onset import OnsetTest, onset_test
-from costeer.validation.resistance import SYSTEMS, Resistance, resist
+from costeer.validation.resistance import CHANGE_DURATIONS, SYSTEMS, Resistance, resist
 from costeer.validation.spread import TargetSpread, target_spreads
 from costeer.validation.stability import Stability, driver_stability
 from costeer.validation.threads import in_threads

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from costeer.bench.drive import Kept, Material, figures, measure_drive
+from benchmarks.speed.pace import Kept, Material, figures, measure_drive
 from costeer.runtime.frame import FRAME_COLUMNS, PLACE, TRACE_COLUMNS
 
 

@@ -8,11 +8,7 @@ from functools import cache
 import numpy as np
 import pytest
 
-from costeer.loop.scenario import PILOT_SEED
-from costeer.methods.conditions import CONDITION_NAMES
-from costeer.study.configuration import PUBLISHED_STUDY
-from costeer.study.trigger_costs import COST_COLUMNS
-from costeer.validation.trigger_cost import (
+from benchmarks.trigger_cost import (
     ANNOUNCED_CROSSING,
     EVENTS,
     FALSE_TRIGGER,
@@ -25,6 +21,10 @@ from costeer.validation.trigger_cost import (
     spread,
     trial_of,
 )
+from costeer.loop.scenario import PILOT_SEED
+from costeer.methods.conditions import CONDITION_NAMES
+from costeer.study.configuration import PUBLISHED_STUDY
+from costeer.study.trigger_costs import COST_COLUMNS
 
 DRIVEN = ("manual", "strong-rapid", "strong-gentle", "weak-rapid")
 

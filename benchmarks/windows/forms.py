@@ -2,7 +2,7 @@
 
 Strided windows begin only at every s-th sample, so that the verdict is that of a
 window of 180 to 180 + s - 1 samples: 180/s states instead of 180. A carried state is
-the end of that row. The cascade (intention/cascade.py) opens exact windows where a
+the end of that row. The cascade (cascade.py) opens exact windows where a
 strided one stirs.
 """
 
@@ -16,13 +16,13 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from benchmarks.windows import cascade, sparse
+from benchmarks.windows.cascade import CascadeState, CascadeWeights, cascade_weights
+from benchmarks.windows.sparse import NEVER, advance_few
 from costeer.base.entry import entry
-from costeer.intention import cascade, sparse
-from costeer.intention.cascade import CascadeState, CascadeWeights, cascade_weights
 from costeer.intention.features import WINDOW_LENGTH, IntentionSample
 from costeer.intention.gru import NetworkWeights, hidden_size
 from costeer.intention.kernel import TILE
-from costeer.intention.sparse import NEVER, advance_few
 from costeer.intention.wavefront import (
     WavefrontState,
     WavefrontWeights,

@@ -7,7 +7,7 @@ import subprocess
 import sys
 import tempfile
 
-from costeer.bench.timing import FULL, Effort, Outcome, figure, seconds_of
+from benchmarks.speed.timing import FULL, Effort, Outcome, figure, seconds_of
 
 HELP_BUDGET = 0.5
 """Wall time of `costeer --help` [s]."""

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from costeer.bench.agreement import agreement, joined, matched, percentile
-from costeer.bench.windows import (
+from benchmarks.windows.agreement import agreement, joined, matched, percentile
+from benchmarks.windows.forms import (
     CARRIED,
     EXACT,
     WATCHER,
@@ -16,9 +16,9 @@ from costeer.bench.windows import (
     num_starts,
     strided,
 )
+from benchmarks.windows.sparse import NEVER, STRIDE
 from costeer.intention.features import WINDOW_LENGTH
 from costeer.intention.gru import crossing_probability
-from costeer.intention.sparse import NEVER, STRIDE
 from costeer.intention.wavefront import crossing_probabilities
 from tests.intention.lively import lively_weights, signals
 

@@ -9,15 +9,15 @@ import numpy as np
 import pytest
 from llvmlite import ir
 
-from costeer.bench.control import measure_network
-from costeer.bench.cost import (
+from benchmarks.speed.control import measure_network
+from benchmarks.speed.cost import (
     GATE_OPERATIONS,
     intensity,
     moved,
     operations,
     verdict_cost,
 )
-from costeer.bench.limit import (
+from benchmarks.speed.limit import (
     NUM_SUMS,
     arithmetic_limit,
     measure_limit,
@@ -25,8 +25,8 @@ from costeer.bench.limit import (
     run_arithmetic,
     run_reading,
 )
-from costeer.bench.timing import Effort, Figure, Skipped
-from costeer.bench.verdicts import measure_verdict, single_verdicts
+from benchmarks.speed.timing import Effort, Figure, Skipped
+from benchmarks.speed.verdicts import measure_verdict, single_verdicts
 from costeer.intention.gru import random_weights
 from costeer.intention.kernel import LAYOUT, _close_gates
 from costeer.intention.lanes import Floats, Lanes
@@ -123,7 +123,7 @@ def test_a_system_without_that_clock_is_a_named_line(
     def nothing() -> None:
         raise NotImplementedError("no clock")
 
-    monkeypatch.setattr("costeer.bench.verdicts._timed_calls", nothing)
+    monkeypatch.setattr("benchmarks.speed.verdicts._timed_calls", nothing)
     found = measure_verdict("8 units", random_weights(8, 1), 1e11, TINY)
     assert found == [Skipped("verdict, 8 units", "verdict, 8 units", "no clock")]
 

@@ -1,10 +1,10 @@
 r"""Cheaper forms of the exact window: their cost, and what they change.
 
-    python benchmarks/cheaper_windows.py                         # 320 km, find the gate
-    python benchmarks/cheaper_windows.py --assisted
-    python benchmarks/cheaper_windows.py --drivers 1260 --seed 75001 --gates 0.005 \
+    python -m benchmarks.windows                         # 320 km, find the gate
+    python -m benchmarks.windows --assisted
+    python -m benchmarks.windows --drivers 1260 --seed 75001 --gates 0.005 \
         --brief --jobs 2                                         # 10,000 km
-    python benchmarks/cheaper_windows.py --cost-only   # a minute, on a quiet core
+    python -m benchmarks.windows --cost-only   # a minute, on a quiet core
 
 Simulates trials of 8 km of drivers of its own, asks every form for a verdict at every
 sample, and prints what it costs, how far it is from the exact window and which triggers
@@ -27,9 +27,9 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from costeer.bench.agreement import Agreement, agreement, joined, percentile
-from costeer.bench.machine import load, processor_name
-from costeer.bench.windows import GATES, STRIDES, WATCHER, Form, enlarged, forms
+from benchmarks.speed.machine import load, processor_name
+from benchmarks.windows.agreement import Agreement, agreement, joined, percentile
+from benchmarks.windows.forms import GATES, STRIDES, WATCHER, Form, enlarged, forms
 from costeer.intention.features import FEATURES, SAMPLE_RATE
 from costeer.intention.gru import NetworkWeights, hidden_size
 from costeer.intention.weights import load_weights

@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+from benchmarks.speed.limit import measure_limit
+from benchmarks.speed.timing import Effort, Figure, Outcome, Skipped, percentiles
+from benchmarks.speed.verdicts import SIZES, measure_verdict
 from costeer.base.packing import pack
-from costeer.bench.limit import measure_limit
-from costeer.bench.timing import Effort, Figure, Outcome, Skipped, percentiles
-from costeer.bench.verdicts import SIZES, measure_verdict
 from costeer.controller.realtime import ControlInput, control_step, packed_controller
+from costeer.controller.signals import Request
 from costeer.intention.gru import hidden_size, random_weights
 from costeer.loop import step as loop
+from costeer.loop.parameters import DT, LoopParameters
 from costeer.loop.trial import shipped_network
+from costeer.methods.ibhs import IBHS
+from costeer.methods.interface import rule_of, usual_parameters
 from costeer.plant.road import cruising_lane
 
 CONTROL_STEP_BUDGET = 20.0
@@ -18,17 +22,16 @@ CONTROL_STEP_BUDGET = 20.0
 
 def measure_control_step(effort: Effort) -> Outcome:
     """Everything but the network, one packed float64 array in and one out."""
-    parameters = loop.LoopParameters()
+    parameters = LoopParameters(controller=usual_parameters(IBHS))
     lane = cruising_lane(parameters.road)
     memory = packed_controller(parameters.controller, lane)
-    state = loop.initial_state(parameters)
-    sample = loop.sense(parameters, state)
-    pack(memory.given, ControlInput(sample, float("nan"), False))
-    control_step(*memory, loop.DT)
+    state = loop.initial_state(rule_of(IBHS), parameters)
+    pack(memory.given, ControlInput(loop.sense(parameters, state), Request()))
+    control_step(*memory, DT)
     figures = percentiles(
         "control step",
         "control step",
-        lambda: control_step(*memory, loop.DT),
+        lambda: control_step(*memory, DT),
         effort,
     )
     remark = "all but the network, one packed array in and out"

@@ -7,17 +7,17 @@ import sys
 
 import pytest
 
-from costeer.bench import machine, peers, trials
-from costeer.bench.control import (
+from benchmarks.speed import machine, peers, trials
+from benchmarks.speed.control import (
     CONTROL_STEP_BUDGET,
     measure_control_step,
     measure_network,
 )
-from costeer.bench.peers import COMPILED, PLAIN, drive, drive_compiled, measure_peers
-from costeer.bench.start import measure_start
-from costeer.bench.timing import FULL, Effort, Figure, Outcome, Skipped
-from costeer.bench.trials import measure_engines, measure_trials
-from costeer.bench.verdicts import SIZES
+from benchmarks.speed.peers import COMPILED, PLAIN, drive, drive_compiled, measure_peers
+from benchmarks.speed.start import measure_start
+from benchmarks.speed.timing import FULL, Effort, Figure, Outcome, Skipped
+from benchmarks.speed.trials import measure_engines, measure_trials
+from benchmarks.speed.verdicts import SIZES
 from costeer.plant.parameters import CarParameters
 
 TINY = Effort(rounds=1, calls=100, length=150.0, batch=1)
@@ -57,7 +57,7 @@ def test_a_damaged_network_is_a_named_line(monkeypatch: pytest.MonkeyPatch) -> N
     def damaged() -> None:
         raise ValueError("the shipped network was altered")
 
-    monkeypatch.setattr("costeer.bench.control.shipped_network", damaged)
+    monkeypatch.setattr("benchmarks.speed.control.shipped_network", damaged)
     skipped = [f for f in measure_network(TINY) if isinstance(f, Skipped)]
     assert [f.reason for f in skipped] == ["the shipped network was altered"]
 

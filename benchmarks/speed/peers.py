@@ -13,11 +13,11 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
+from benchmarks.speed.timing import Effort, Figure, Outcome, Skipped, figure, seconds_of
 from costeer.base import array as xp
 from costeer.base.array import compiled
 from costeer.base.entry import entry
 from costeer.base.integrate import rk4
-from costeer.bench.timing import Effort, Figure, Outcome, Skipped, figure, seconds_of
 from costeer.plant.parameters import CarParameters
 from costeer.plant.vehicle import VehicleInput, VehicleState, vehicle_rate
 

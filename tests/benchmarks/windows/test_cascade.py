@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from costeer.intention import cascade, sparse, wavefront
+from benchmarks.windows import cascade, sparse
+from costeer.intention import wavefront
 from costeer.intention.features import WINDOW_LENGTH, IntentionSample
 from costeer.intention.kernel import TILE
 from tests.intention.lively import lively_weights, needy_weights, signals

@@ -7,10 +7,7 @@ import pytest
 from numpy.typing import NDArray
 
 from benchmarks.paper_split import table
-from costeer.training.dataset import Split
-from costeer.training.evaluate import evaluate
-from costeer.training.recordings import Recording, recording
-from costeer.training.splits import (
+from benchmarks.splits import (
     PAPER,
     PaperRecordings,
     compare_splits,
@@ -22,9 +19,12 @@ from costeer.training.splits import (
     split_by_time,
     time_blocks,
 )
-from costeer.training.splits import (
+from benchmarks.splits import (
     test_places as drawn_places,
 )
+from costeer.training.dataset import Split
+from costeer.training.evaluate import evaluate
+from costeer.training.recordings import Recording, recording
 from tests.training.synthetic import columns
 
 SMALL = PAPER._replace(

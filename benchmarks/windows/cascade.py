@@ -21,13 +21,14 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from benchmarks.windows import sparse
+from benchmarks.windows.sparse import STRIDE, SparseState, SparseWeights, advance_few
 from costeer.base.array import compiled
 from costeer.base.entry import entry
-from costeer.intention import sparse, wavefront
+from costeer.intention import wavefront
 from costeer.intention.features import NUM_FEATURES, WINDOW_LENGTH, IntentionSample
 from costeer.intention.gru import NetworkWeights
 from costeer.intention.kernel import TILE
-from costeer.intention.sparse import STRIDE, SparseState, SparseWeights, advance_few
 from costeer.intention.wavefront import (
     WavefrontState,
     WavefrontWeights,

@@ -18,8 +18,8 @@ from numba.core import cgutils
 from numba.extending import intrinsic
 from numpy.typing import NDArray
 
+from benchmarks.speed.timing import Effort, Figure, figure, seconds_of
 from costeer.base.entry import entry
-from costeer.bench.timing import Effort, Figure, figure, seconds_of
 from costeer.intention.kernel import LAYOUT, ROWS
 from costeer.intention.lanes import Floats, Lanes, fused
 from costeer.intention.wavefront import aligned

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from costeer.identification.column import fit_column
+from benchmarks.column_fit import fit_column
 from costeer.plant.parameters import ColumnParameters
 from costeer.plant.steering import steering_wheel_rate
 from costeer.sensing.torque_observer import (

@@ -8,7 +8,7 @@ from functools import partial
 
 import numpy as np
 
-from costeer.bench.timing import Effort, Outcome, Skipped, figure, seconds_of
+from benchmarks.speed.timing import Effort, Outcome, Skipped, figure, seconds_of
 from costeer.intention.wavefront import initial_state
 from costeer.loop.jax_rollout import jax_rollouts
 from costeer.loop.noise import driver_noise
@@ -22,11 +22,10 @@ from costeer.loop.trial import (
     simulate_trial,
     trial_duration,
 )
+from costeer.methods.ibhs import IBHS
 from costeer.study.jobs import default_jobs
 
-STRONG = TrialSetup(
-    condition="strong-normal", strength_factor=1.0, intention="scripted"
-)
+STRONG = TrialSetup(condition="strong-normal", intention="scripted")
 UNIT = "driver-s/s"
 _ENGINE_SECONDS = 20.0
 _TOGETHER = 64
@@ -87,7 +86,14 @@ def _engine(engine: str, effort: Effort) -> Outcome:
     script = Script(INTENTION_SCRIPTED, 3.0, np.array([]))
     parameters, weights = loop_parameters(STRONG), idle_weights()
     run = partial(
-        rollout, parameters, script, weights, initial_state(weights), noise, engine
+        rollout,
+        IBHS,
+        parameters,
+        script,
+        weights,
+        initial_state(weights),
+        noise,
+        engine,
     )
     try:
         (first,) = seconds_of(run, 1)
@@ -109,7 +115,11 @@ def _many_in_jax(effort: Effort) -> Outcome:
     noise = np.stack([driver_noise(1, n, STRONG.condition, steps) for n in numbers])
     parameters = [loop_parameters(STRONG._replace(participant=n)) for n in numbers]
     run = partial(
-        jax_rollouts, parameters, Script(INTENTION_SCRIPTED, 3.0, np.array([])), noise
+        jax_rollouts,
+        IBHS,
+        parameters,
+        Script(INTENTION_SCRIPTED, 3.0, np.array([])),
+        noise,
     )
     (first,) = seconds_of(run, 1)
     times = seconds_of(run, effort.rounds)

@@ -4,26 +4,35 @@ from __future__ import annotations
 
 import ctypes
 import os
+import tempfile
 import time
 from functools import cache
+from pathlib import Path
 from typing import Any
 
 import numba
 import numpy as np
 from numpy.typing import NDArray
 
-from costeer.bench.cost import intensity, moved, operations, verdict_cost
-from costeer.bench.timing import (
+from benchmarks.speed.cost import intensity, moved, operations, verdict_cost
+from benchmarks.speed.timing import (
     Effort,
     Figure,
     Outcome,
     Skipped,
     figure,
     percentiles,
+    seconds_of,
 )
-from costeer.intention.features import NUM_FEATURES, SAMPLE_RATE, IntentionSample
+from costeer.intention.features import (
+    NUM_FEATURES,
+    SAMPLE_RATE,
+    WINDOW_LENGTH,
+    IntentionSample,
+)
 from costeer.intention.gru import NetworkWeights, hidden_size
 from costeer.intention.wavefront import advance, initial_state, wavefront_weights
+from costeer.intention.weights import intention_network
 from costeer.study.jobs import default_jobs
 
 SIZES = (8, 16, 24, 32, 48, 64)
@@ -125,7 +134,12 @@ def measure_verdict(
         figure(group, what, unit, values, _remark(size, what, unit, values))
         for (what, unit), values in numbers.items()
     ]
-    return [*figures[:2], *_from_python(group, weights, effort), *figures[2:]]
+    return [
+        *figures[:2],
+        *_from_python(group, weights, effort),
+        *_in_onnx_runtime(group, weights, effort),
+        *figures[2:],
+    ]
 
 
 def _from_python(group: str, weights: NetworkWeights, effort: Effort) -> list[Figure]:
@@ -144,6 +158,31 @@ def _from_python(group: str, weights: NetworkWeights, effort: Effort) -> list[Fi
         each._replace(name=f"{label} from Python")
         for each, label in zip(found, ("p50", "p99"), strict=False)
     ]
+
+
+def _in_onnx_runtime(
+    group: str, weights: NetworkWeights, effort: Effort
+) -> list[Figure]:
+    """The whole window of 180 samples anew, on one thread; none if not installed."""
+    try:
+        import onnxruntime
+
+        from costeer.export.onnx import write_onnx
+    except ImportError:
+        return []
+    with tempfile.TemporaryDirectory() as folder:
+        file = Path(folder) / "network.onnx"
+        write_onnx(file, intention_network(weights, {}))
+        options = onnxruntime.SessionOptions()
+        options.intra_op_num_threads = 1
+        session = onnxruntime.InferenceSession(
+            str(file), options, providers=["CPUExecutionProvider"]
+        )
+    window = np.zeros((1, WINDOW_LENGTH, NUM_FEATURES), np.float32)
+    times = seconds_of(
+        lambda: session.run(None, {"feature_window": window}), _FRESH * effort.rounds
+    )
+    return [figure(group, "ONNX Runtime", "us", 1e6 * times)]
 
 
 def _remark(size: int, what: str, unit: str, values: NDArray[np.float64]) -> str:

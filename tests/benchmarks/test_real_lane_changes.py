@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from benchmarks import real_lane_changes as transfer
 from costeer.intention.gru import random_weights
 from costeer.intention.predictors.interface import Probabilities
 from costeer.training.recordings import Recording, lacking
 from costeer.training.tuning import DEFAULTS
-from costeer.validation.intention import transfer
 from tests.training.synthetic import drive
 
 MOTION = ("head_yaw", "steering_wheel_angle")

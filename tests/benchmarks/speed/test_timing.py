@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from costeer.bench.timing import (
+from benchmarks.speed.timing import (
     FULL,
     QUICK,
     call_times,

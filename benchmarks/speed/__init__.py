@@ -1,0 +1,1 @@
+"""What `costeer bench` prints: control step, trials, batch, peers, pace of a drive."""

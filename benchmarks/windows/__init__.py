@@ -1,0 +1,1 @@
+"""Cheaper forms of the exact window, what they cost and what they change."""

@@ -1,1 +1,0 @@
-"""How fast it is: control step, trial, batch, and peers where installed."""
