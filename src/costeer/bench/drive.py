@@ -25,8 +25,9 @@ from costeer.devices.wheels.simulated import (
 )
 from costeer.loop.scenario import TrialSetup
 from costeer.runtime.clock import favour_thread
-from costeer.runtime.frame import PLACE, RUNNING, TRACE_COLUMNS
+from costeer.runtime.frame import PLACE, TRACE_COLUMNS
 from costeer.runtime.setup import PLANT_DT, DriveSetup, trial_setup
+from costeer.runtime.states import RunState
 from costeer.web.app import drive_app
 from costeer.web.drive import DriveOnPages, PageOptions
 from costeer.web.security import access_for
@@ -125,7 +126,7 @@ def measure_drive(seconds: float, browser: str) -> Material:
     arrivals: list[float] = []
 
     def keep(frame: NDArray[np.float64]) -> None:
-        if frame[PLACE["run_state"]] == RUNNING:
+        if frame[PLACE["run_state"]] == RunState.RUNNING:
             frames.append(frame.copy())
             arrivals.append(time.perf_counter())
 

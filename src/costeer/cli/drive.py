@@ -168,7 +168,7 @@ def send_to_lsl(session: DriveOnPages) -> None:
     later = lsl_clock() - time.perf_counter()
     session.also(
         lambda frame: outlet.push(frame.tolist(), frame[PLACE["sent_time"]] + later),
-        lambda marker: outlet.mark(str(marker["kind"]), str(marker["text"])),
+        outlet.mark,
     )
 
 

@@ -4,12 +4,60 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from typing import NamedTuple
 
 from costeer.methods.registry import method_named
 from costeer.runtime.cabin import Cabin
+from costeer.runtime.markers import Marker
 from costeer.runtime.setup import DriveSetup, strength_of
 from costeer.runtime.tunables import checked_value, tunable_named
 from costeer.study.conditions import CONDITION_NAMES, condition
+
+
+class Chosen(NamedTuple):
+    """What holds in a drive.
+
+    Attributes:
+        condition: Its name.
+        method: Its name.
+        values: Of tunables by name, each in its unit.
+    """
+
+    condition: str
+    method: str
+    values: dict[str, float]
+
+
+def followed(chosen: Chosen, marker: Marker) -> Chosen:
+    """What holds after a marker; the same object if that changed nothing."""
+    match marker:
+        case Marker(kind="condition", after=str(name)):
+            return chosen._replace(condition=name)
+        case Marker(kind="method", after=str(name)):
+            return chosen._replace(method=name)
+        case Marker(kind="parameter", after=float(value)):
+            return chosen._replace(values={**chosen.values, marker.name: value})
+    return chosen
+
+
+def checked_choice(name: str, value: float | str) -> float | str:
+    """What is to be set, if it can be.
+
+    Args:
+        name: `condition`, `method`, or of a tunable.
+        value: A name for the first two, else a number in the tunable's unit.
+
+    Raises:
+        ValueError: If there is none of that name, or the value is out of range.
+    """
+    if name == "condition":
+        return condition(str(value)).name
+    if name == "method":
+        return method_named(str(value)).name
+    tunable = tunable_named(name)
+    if isinstance(value, str):
+        raise ValueError(f"{name} is {value!r}; give a number")
+    return float(checked_value(tunable, value))
 
 
 class Choices:
@@ -18,11 +66,11 @@ class Choices:
     Args:
         cabin: Of the drive.
         setup: Of the drive, with what holds at the start.
-        mark: Takes kind and text of a marker.
+        mark: Takes a marker; its time is filled in there.
     """
 
     def __init__(
-        self, cabin: Cabin, setup: DriveSetup, mark: Callable[[str, str], None]
+        self, cabin: Cabin, setup: DriveSetup, mark: Callable[[Marker], None]
     ) -> None:
         self._cabin = cabin
         self._condition = setup.trial.condition
@@ -34,42 +82,41 @@ class Choices:
         """Of the condition, in the order of `CONDITION_NAMES`."""
         return float(CONDITION_NAMES.index(self._condition))
 
-    def set(self, name: str, value: float) -> None:
-        """Set a tunable.
+    def set(self, name: str, value: float | str) -> None:
+        """Drive on with another condition, method or value of a tunable.
 
         Raises:
-            ValueError: If there is none of that name, or the value is out of range.
+            ValueError: As `checked_choice`.
         """
-        tunable = tunable_named(name)
-        before = self._cabin.tune(tunable, checked_value(tunable, value))
-        if before != value:
-            self._mark("gain", f"{name} {before:.9g} -> {value:.9g} {tunable.unit}")
+        value = checked_choice(name, value)
+        if name == "condition":
+            self._choose_condition(str(value))
+        elif name == "method":
+            self._choose_method(str(value))
+        else:
+            self._tune(name, float(value))
 
-    def choose_condition(self, name: str) -> None:
-        """Drive on under a condition: its strength and its duration.
-
-        Raises:
-            ValueError: If there is none of that name.
-        """
-        chosen = condition(name)
-        self._mark("condition", f"{self._condition} -> {chosen.name}")
-        self._condition = chosen.name
+    def _choose_condition(self, name: str) -> None:
+        """Take on a condition: its strength and its duration."""
+        self._mark(Marker("condition", before=self._condition, after=name))
+        self._condition = name
         self._apply_strength()
-        if math.isfinite(chosen.change_duration):
-            self.set("change_duration", chosen.change_duration)
+        duration = condition(name).change_duration
+        if math.isfinite(duration):
+            self._tune("change_duration", duration)
 
-    def choose_method(self, name: str) -> None:
-        """Drive on with a method.
-
-        Raises:
-            ValueError: If there is none of that name.
-        """
-        method_named(name)
-        self._mark("method", f"{self._method} -> {name}")
+    def _choose_method(self, name: str) -> None:
+        self._mark(Marker("method", before=self._method, after=name))
         self._method = name
         self._apply_strength()
 
     def _apply_strength(self) -> None:
         """The strength factor that condition and method ask for together."""
         factor = strength_of(condition(self._condition), self._method)
-        self.set("strength_factor", factor)
+        self._tune("strength_factor", float(factor))
+
+    def _tune(self, name: str, value: float) -> None:
+        tunable = tunable_named(name)
+        before = self._cabin.tune(tunable, value)
+        if before != value:
+            self._mark(Marker("parameter", name, before, value, tunable.unit))

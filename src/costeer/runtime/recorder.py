@@ -11,10 +11,12 @@ from numpy.typing import NDArray
 from costeer.base.packing import packed, unpack
 from costeer.loop.step import LoopParameters
 from costeer.loop.trial import shipped_network, trial_metadata
-from costeer.runtime.frame import ENDED, PLACE, RUNNING
+from costeer.runtime.frame import PLACE
+from costeer.runtime.markers import Marker
 from costeer.runtime.setup import DriveSetup, drive_parameters
 from costeer.runtime.shared import Shared
-from costeer.runtime.stream import Marker, RecordStream
+from costeer.runtime.states import RunState
+from costeer.runtime.stream import RecordStream
 from costeer.runtime.tunables import place_of, tunable_named
 
 INTERVAL = 0.25
@@ -143,7 +145,7 @@ class Recorder:
     def _running(self, frames: NDArray[np.float64]) -> NDArray[np.float64]:
         """Frames of the running trial, each moment once, that of its end included."""
         time, state = frames[:, PLACE["time"]], frames[:, PLACE["run_state"]]
-        goes_on = (state == RUNNING) | (state == ENDED)
+        goes_on = (state == RunState.RUNNING) | (state == RunState.ENDED)
         taken = frames[goes_on & (time > self._last_time)]
         times = taken[:, PLACE["time"]]
         running: NDArray[np.float64] = taken[np.diff(times, prepend=-1.0) > 0.0]

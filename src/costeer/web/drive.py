@@ -14,18 +14,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from costeer.base.packing import packed
-from costeer.methods.registry import METHODS, method_named
+from costeer.methods.registry import METHODS
 from costeer.plant.parameters import wheelbase
+from costeer.runtime.choices import Chosen, checked_choice, followed
 from costeer.runtime.drive import Drive, Listener
 from costeer.runtime.frame import FRAME_COLUMNS, PLACE
+from costeer.runtime.markers import Marker
 from costeer.runtime.patience import PAGE_PATIENCE
 from costeer.runtime.setup import PLANT_DT, DriveSetup, drive_parameters
-from costeer.runtime.stream import Marker
-from costeer.runtime.tunables import TUNABLES, checked_value, place_of, tunable_named
-from costeer.study.conditions import CONDITION_NAMES, condition
+from costeer.runtime.states import page_tables
+from costeer.runtime.tunables import TUNABLES, place_of
+from costeer.study.conditions import CONDITION_NAMES
 from costeer.web.messages import (
-    ChooseCondition,
-    ChooseMethod,
     Indicator,
     Input,
     Latency,
@@ -36,6 +36,7 @@ from costeer.web.messages import (
     Set,
     Start,
     Stop,
+    marker_shown,
 )
 from costeer.web.session import Broadcast, Role
 
@@ -83,10 +84,9 @@ class DriveOnPages:
         self._late = Lateness()
         self._options = options
         self._num_drivers = 0
-        self._condition = setup.trial.condition
-        self._method = setup.method
-        values = packed(drive_parameters(setup))
-        self._values = {t.name: float(values[place_of(t)]) for t in TUNABLES}
+        packs = packed(drive_parameters(setup))
+        values = {each.name: float(packs[place_of(each)]) for each in TUNABLES}
+        self._chosen = Chosen(setup.trial.condition, setup.method, values)
         self.drive = Drive(setup, record, Listener(self._tell, self._mark))
 
     def also(
@@ -112,28 +112,21 @@ class DriveOnPages:
         """Pass a marker on, and what it changed."""
         for other in self._others:
             other.marker(marker)
-        kind, text = marker["kind"], str(marker["text"])
-        if kind == "error":  # something could not be done, and who drives must know
-            self.broadcast.send({"type": "error", "text": text})
+        if marker.kind == "error":  # it could not be done, and who drives must know
+            self.broadcast.send({"type": "error", "text": marker.note})
             return
-        self.broadcast.send({"type": "marker", **marker})
-        _, _, new = text.partition(" -> ")
-        if kind == "condition":
-            self._condition = new
-        elif kind == "method":
-            self._method = new
-        elif kind == "gain":
-            self._values[text.partition(" ")[0]] = float(new.split()[0])
-        else:
-            return
-        self.broadcast.send(self._state())
+        self.broadcast.send({"type": "marker", **marker_shown(marker)})
+        chosen = followed(self._chosen, marker)
+        if chosen is not self._chosen:
+            self._chosen = chosen
+            self.broadcast.send(self._state())
 
     def _state(self) -> dict[str, object]:
         """What an experimenter has chosen."""
         return {
             "type": "state",
-            "condition": self._condition,
-            "method": self._method,
+            "condition": self._chosen.condition,
+            "method": self._chosen.method,
             "tunables": self._tunables(),
         }
 
@@ -144,7 +137,7 @@ class DriveOnPages:
                 "unit": each.unit,
                 "low": each.low,
                 "high": each.high,
-                "value": self._values[each.name],
+                "value": self._chosen.values[each.name],
                 "label": each.label,
             }
             for each in TUNABLES
@@ -165,9 +158,10 @@ class DriveOnPages:
                 "steering_ratio": car.steering_ratio,
             },
             "conditions": list(CONDITION_NAMES),
-            "condition": self._condition,
+            "condition": self._chosen.condition,
             "methods": list(METHODS),
-            "method": self._method,
+            "method": self._chosen.method,
+            **page_tables(),
             "tunables": self._tunables() if role == "experimenter" else [],
             "input": self._options.input,
             "show_signals": self._options.show_signals or role == "experimenter",
@@ -188,7 +182,7 @@ class DriveOnPages:
         elif isinstance(message, Start | Resume | Restart):
             self.drive.send(type(message).__name__.lower())
         elif isinstance(message, Pause):
-            self.drive.send("pause", f"by the {role}")
+            self.drive.send("pause", role)
         elif isinstance(message, Indicator):
             self.drive.send("indicator", message.side)
         else:
@@ -202,14 +196,10 @@ class DriveOnPages:
             ValueError: If name or value cannot be.
         """
         if isinstance(message, Set):
-            value = checked_value(tunable_named(message.name), message.value)
+            value = checked_choice(message.name, message.value)
             self.drive.send("set", message.name, value)
-        elif isinstance(message, ChooseCondition):
-            self.drive.send("condition", condition(message.name).name)
-        elif isinstance(message, ChooseMethod):
-            self.drive.send("method", method_named(message.name).name)
         elif isinstance(message, Stop):
-            self.drive.send("pause", "stopped by the experimenter")
+            self.drive.send("pause", "stop")
             self.on_stop()
 
     def client_joined(self, role: Role) -> None:
