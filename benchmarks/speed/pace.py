@@ -25,8 +25,9 @@ from costeer.devices.wheels.simulated import (
 )
 from costeer.loop.scenario import TrialSetup
 from costeer.runtime.clock import favour_thread
-from costeer.runtime.frame import PLACE, RUNNING, TRACE_COLUMNS
-from costeer.runtime.setup import PLANT_DT, DriveSetup, trial_setup
+from costeer.runtime.frame import PLACE, TRACE_COLUMNS
+from costeer.runtime.setup import PLANT_DT, DriveSetup
+from costeer.runtime.states import RunState
 from costeer.web.app import drive_app
 from costeer.web.drive import DriveOnPages, PageOptions
 from costeer.web.security import access_for
@@ -102,7 +103,7 @@ def bench_setup() -> DriveSetup:
     """A simulated wheel in hands that swing it, over a road without end."""
     trial = TrialSetup(length=200_000.0, events=False)
     return DriveSetup(
-        trial=trial_setup("strong-normal", "ibhs", trial),
+        trial=trial._replace(condition="strong-normal"),
         wheel=simulated_description(hands=SpringHands(amplitude=0.03, period=3.0)),
         calibration=true_calibration(SimulatedWheelParameters()),
         needs_page=False,
@@ -125,7 +126,7 @@ def measure_drive(seconds: float, browser: str) -> Material:
     arrivals: list[float] = []
 
     def keep(frame: NDArray[np.float64]) -> None:
-        if frame[PLACE["run_state"]] == RUNNING:
+        if frame[PLACE["run_state"]] == RunState.RUNNING:
             frames.append(frame.copy())
             arrivals.append(time.perf_counter())
 

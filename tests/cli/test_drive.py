@@ -18,6 +18,7 @@ from costeer.cli import drive as command
 from costeer.cli import main
 from costeer.records.record import read_record
 from costeer.runtime.frame import FRAME_COLUMNS
+from costeer.runtime.markers import Marker
 from costeer.web.drive import DriveOnPages, PageOptions
 from tests.runtime.rig import drive_setup
 
@@ -94,20 +95,20 @@ def test_frames_and_markers_go_to_lsl_with_the_time_of_their_making(
             """Take a sample."""
             sent.append((sample, when))
 
-        def mark(self, kind: str, text: str) -> None:
+        def mark(self, marker: Marker) -> None:
             """Take a marker."""
-            sent.append((kind, text))
+            sent.append(marker)
 
     monkeypatch.setattr("costeer.export.lsl.TrialOutlet", Outlet)
     monkeypatch.setattr("costeer.export.lsl.lsl_clock", lambda: time.perf_counter() + 5)
     session = DriveOnPages(drive_setup(), None, PageOptions())
     command.send_to_lsl(session)
     session._tell(np.full(len(FRAME_COLUMNS), 2.0))
-    session._mark({"time": 0.0, "kind": "paused", "text": "why"})
+    session._mark(Marker("paused", "driver"))
     session.stop()
     assert sent[0][0] == [2.0] * len(FRAME_COLUMNS)
     assert sent[0][1] == pytest.approx(7.0, abs=0.01)
-    assert sent[1] == ("paused", "why")
+    assert sent[1] == Marker("paused", "driver")
 
 
 @pytest.mark.skipif(os.name != "posix", reason="there is no such signal")

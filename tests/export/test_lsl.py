@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 from collections.abc import Iterator
 
@@ -9,6 +10,7 @@ import pylsl
 import pytest
 
 from costeer.export.lsl import MARKER_TYPE, STATE_TYPE, TrialOutlet, lsl_clock
+from costeer.runtime.markers import Marker
 
 COLUMNS = {"time": "s", "driver_torque": "N·m", "haptic_gain": "-"}
 PATIENCE = 30.0
@@ -43,17 +45,24 @@ def test_state_and_markers_arrive_with_times_labels_and_units(
     state, markers = inlet(f"{source}-state"), inlet(f"{source}-markers")
     now = lsl_clock()
     outlet.push([0.5, -1.25, float("nan")], now)
-    outlet.mark("gain", "lateral_error_gain 2.5", now + 0.25)
-    outlet.mark("paused")
+    gain = Marker("parameter", "lateral_error_gain", 1.5, 2.5, "N·m/m", time=61.25)
+    outlet.mark(gain, now + 0.25)
+    outlet.mark(Marker("paused", "driver"))
     sample, time = state.pull_sample(PATIENCE)
     assert sample == pytest.approx([0.5, -1.25, float("nan")], abs=0, nan_ok=True)
     assert time == now
-    assert markers.pull_sample(PATIENCE) == (
-        ["gain: lateral_error_gain 2.5"],
-        now + 0.25,
-    )
-    word, time = markers.pull_sample(PATIENCE)
-    assert word == ["paused"]
+    (text,), time = markers.pull_sample(PATIENCE)
+    assert time == now + 0.25
+    assert json.loads(text) == {
+        "kind": "parameter",
+        "name": "lateral_error_gain",
+        "before": 1.5,
+        "after": 2.5,
+        "unit": "N·m/m",
+        "time": 61.25,
+    }
+    (text,), time = markers.pull_sample(PATIENCE)
+    assert json.loads(text) == {"kind": "paused", "name": "driver", "time": 0.0}
     assert now <= time <= lsl_clock()
     about = state.info(PATIENCE)
     assert (about.name(), about.type(), about.nominal_srate()) == (

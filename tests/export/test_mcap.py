@@ -15,19 +15,28 @@ from hypothesis import strategies as st
 from mcap.reader import make_reader
 
 from costeer.export import mcap as exporter
-from costeer.export.markers import Marker, markers_of
 from costeer.export.mcap import write_mcap
 from costeer.records.record import COLUMNS, TrialRecord
 from tests.study.synthetic import synthetic_record
 
-MARKERS = [{"time": 1.25, "kind": "paused", "text": "wheel lost"}]
-CHANGES = [{"time": 0.5, "name": "lateral_error_gain", "value": 1.5}]
+MARKERS = [
+    {"time": 0.25, "kind": "condition", "before": "manual", "after": "weak-rapid"},
+    {
+        "time": 0.5,
+        "kind": "parameter",
+        "name": "lateral_error_gain",
+        "before": 1.5,
+        "after": 2.0,
+        "unit": "N·m/m",
+    },
+    {"time": 1.25, "kind": "paused", "name": "experimenter"},
+]
 
 
 @pytest.fixture(scope="module")
 def record() -> TrialRecord:
     plain = synthetic_record("strong-normal", length=1300.0)
-    about = plain.metadata | {"markers": MARKERS, "changes": CHANGES}
+    about = plain.metadata | {"markers": MARKERS}
     alone = np.arange(len(plain.columns["time"])) % 3 > 0
     lead_lane = np.ma.MaskedArray(np.ones(len(alone), np.int8), mask=alone)
     columns = plain.columns | {"lead_lane": lead_lane}
@@ -106,12 +115,24 @@ def test_units_and_the_trial_are_in_the_file(path: Path, record: TrialRecord) ->
 
 
 def test_markers_have_a_topic_of_their_own(path: Path) -> None:
-    found = [
-        (m.log_time, s.time, s.kind, s.text) for _, m, s in decoded(path, "/markers")
-    ]
-    assert found == [
-        (500_000_000, 0.5, "change", "name lateral_error_gain, value 1.5"),
-        (1_250_000_000, 1.25, "paused", "wheel lost"),
+    stamps, said = zip(
+        *((m.log_time, s) for _, m, s in decoded(path, "/markers")), strict=True
+    )
+    assert stamps == (250_000_000, 500_000_000, 1_250_000_000)
+    chosen, tuned, paused = said
+    assert (chosen.kind, chosen.before_name, chosen.after_name) == (
+        "condition",
+        "manual",
+        "weak-rapid",
+    )
+    assert np.isnan([chosen.before, chosen.after]).all()
+    assert (tuned.name, tuned.before, tuned.after) == ("lateral_error_gain", 1.5, 2.0)
+    assert (tuned.unit, tuned.before_name) == ("N·m/m", "")
+    assert (paused.time, paused.name) == (1.25, "experimenter")
+    assert [each.text for each in said] == [
+        "condition: manual → weak-rapid",
+        "lateral_error_gain: 1.5 → 2 N·m/m",
+        "paused: by the experimenter",
     ]
 
 
@@ -175,12 +196,3 @@ def test_a_failure_leaves_the_old_file_and_nothing_else(
     with pytest.raises(OSError, match="No space"):
         write_mcap(record, path)
     assert [each.read_bytes() for each in tmp_path.iterdir()] == [b"old"]
-
-
-def test_only_what_has_a_time_is_a_marker() -> None:
-    about: dict[str, object] = {
-        "markers": [{"time": 2, "text": ""}, {"time": "2"}, {"time": float("nan")}, 5],
-        "changes": "none",
-    }
-    assert markers_of(about) == [Marker(2.0, "marker", "")]
-    assert markers_of({}) == []

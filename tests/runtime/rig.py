@@ -5,7 +5,6 @@ from __future__ import annotations
 import multiprocessing
 import socket
 from contextlib import suppress
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,7 +22,8 @@ from costeer.loop.scenario import TrialSetup
 from costeer.runtime.driving import Driving
 from costeer.runtime.frame import FRAME_COLUMNS, PLACE
 from costeer.runtime.links import Links
-from costeer.runtime.setup import PLANT_DT, PLANT_STEPS, DriveSetup, trial_setup
+from costeer.runtime.markers import Marker
+from costeer.runtime.setup import PLANT_DT, PLANT_STEPS, DriveSetup
 from costeer.runtime.shared import Shared, close_shared, make_shared
 
 FOR_EVER = 1e9
@@ -32,7 +32,7 @@ FOR_EVER = 1e9
 def drive_setup(condition: str = "strong-normal", **trial: object) -> DriveSetup:
     """A drive with virtual hands."""
     return DriveSetup(
-        trial=trial_setup(condition, "ibhs", TrialSetup()._replace(**trial)),
+        trial=TrialSetup(condition=condition)._replace(**trial),
         intention="off",
         needs_page=False,
     )
@@ -53,14 +53,6 @@ def wheel_setup(
         ),
         calibration=true_calibration(SimulatedWheelParameters(**options)),  # type: ignore[arg-type]  # of the test's own making
     )
-
-
-class Heard(NamedTuple):
-    """A marker."""
-
-    time: float
-    kind: str
-    text: str
 
 
 class Rig:
@@ -106,13 +98,13 @@ class Rig:
                 self.now += PLANT_DT
         return self.shared.frames.since(first)[1]
 
-    def heard(self) -> list[Heard]:
+    def heard(self) -> list[Marker]:
         """Markers since the last time."""
         found = []
         while self._near.poll():
-            word, *values = self._near.recv()
+            word, marker = self._near.recv()
             assert word == "marker"
-            found.append(Heard(*values))
+            found.append(marker)
         return found
 
     def kinds(self) -> list[str]:

@@ -9,19 +9,9 @@ import numpy as np
 import pytest
 
 from costeer.devices.wheels.simulated import SimulatedWheel, SpringHands
-from costeer.runtime.frame import (
-    BROWSER_LOST,
-    NO_FAULT,
-    NOT_FINITE,
-    PAUSED,
-    RUNNING,
-    SENSOR_STALE,
-    STALLED,
-    WAITING,
-    WHEEL_LOST,
-)
 from costeer.runtime.guard import GuardParameters
 from costeer.runtime.setup import DriveSetup
+from costeer.runtime.states import Fault, RunState
 from tests.runtime.rig import Rig, drive_setup, of, wheel_setup
 
 HANDS = SpringHands(stiffness=6.0, damping=0.6)
@@ -88,8 +78,7 @@ def test_end_of_the_process_fades_out_first_and_is_marked(rig: MakeRig) -> None:
         assert steps < 30
     assert torque[0] > 0.2
     assert torque[-1] == 0.0
-    last = drive.heard()[-1]
-    assert (last.kind, last.text) == ("ended", "stopped")
+    assert drive.heard()[-1][:2] == ("ended", "server")
 
 
 def test_sample_that_is_no_number_is_left_out(rig: MakeRig) -> None:
@@ -102,12 +91,12 @@ def test_sample_that_is_no_number_is_left_out(rig: MakeRig) -> None:
     wheel.read = lambda: whole()._replace(steering_wheel_angle=math.nan)  # type: ignore[method-assign]  # a fault, injected
     short = drive.steps(2)
     wheel.read = whole  # type: ignore[method-assign]  # the fault is over
-    assert (of(short, "run_state") == RUNNING).all()
+    assert (of(short, "run_state") == RunState.RUNNING).all()
     assert np.isfinite(of(drive.steps(5), "lateral_position")).all()
     wheel.read = lambda: whole()._replace(steering_wheel_angle=math.nan)  # type: ignore[method-assign]  # and comes back to stay
     frames = drive.steps(10)
-    assert of(frames, "fault")[-1] == SENSOR_STALE
-    assert of(frames, "run_state")[-1] == PAUSED
+    assert of(frames, "fault")[-1] == Fault.SENSOR_STALE
+    assert of(frames, "run_state")[-1] == RunState.PAUSED
 
 
 def test_paddles_set_the_indicator_and_take_it_back(rig: MakeRig) -> None:
@@ -126,15 +115,15 @@ def test_unplugged_wheel_pauses_the_trial_and_says_so(rig: MakeRig) -> None:
     drive = rig(wheel_setup(unplug_at=0.5))
     drive.ask("start")
     frames = drive.steps(60)
-    assert of(frames, "run_state")[-1] == PAUSED
-    assert of(frames, "fault")[-1] == WHEEL_LOST
+    assert of(frames, "run_state")[-1] == RunState.PAUSED
+    assert of(frames, "fault")[-1] == Fault.WHEEL_LOST
     assert of(frames, "time")[-1] == pytest.approx(0.5, abs=0.05)
-    assert "plug it in" in drive.heard()[-1].text
+    assert drive.heard()[-1][:2] == ("fault", "wheel_lost")
     # A new one (the same, seen from its own start) is found, and the trial goes on.
     drive.ask("resume")
     again = drive.steps(5)
-    assert of(again, "run_state")[-1] == RUNNING
-    assert of(again, "fault")[-1] == NO_FAULT
+    assert of(again, "run_state")[-1] == RunState.RUNNING
+    assert of(again, "fault")[-1] == Fault.NONE
 
 
 def test_silent_wheel_pauses_the_trial_without_torque_within_100_ms(
@@ -144,8 +133,8 @@ def test_silent_wheel_pauses_the_trial_without_torque_within_100_ms(
     drive.ask("start")
     frames = drive.steps(120)
     assert np.abs(of(frames, "wheel_torque")[80:88]).min() > 0.1
-    assert of(frames, "fault")[-1] == SENSOR_STALE
-    assert of(frames, "run_state")[-1] == PAUSED
+    assert of(frames, "fault")[-1] == Fault.SENSOR_STALE
+    assert of(frames, "run_state")[-1] == RunState.PAUSED
     # It stood still at 1.5 s, step 90; six steps are 100 ms.
     assert (of(frames, "wheel_torque")[96:] == 0.0).all()
 
@@ -156,21 +145,21 @@ def test_lost_page_pauses_the_trial(rig: MakeRig) -> None:
     drive.steps(10)
     drive.shared.mailbox.put(page_time=drive.now - 1.1)
     frames = drive.steps(3)
-    assert of(frames, "run_state")[-1] == PAUSED
-    assert of(frames, "fault")[-1] == BROWSER_LOST
+    assert of(frames, "run_state")[-1] == RunState.PAUSED
+    assert of(frames, "fault")[-1] == Fault.PAGE_LOST
     drive.alive(60.0)
     drive.ask("resume")
-    assert of(drive.steps(2), "run_state")[-1] == RUNNING
+    assert of(drive.steps(2), "run_state")[-1] == RunState.RUNNING
 
 
 def test_closed_page_pauses_the_trial_at_once(rig: MakeRig) -> None:
     drive = rig(drive_setup()._replace(needs_page=True))
     drive.ask("leave")
-    assert of(drive.steps(1), "fault")[-1] == NO_FAULT  # nothing ran
+    assert of(drive.steps(1), "fault")[-1] == Fault.NONE  # nothing ran
     drive.ask("start")
     drive.steps(5)
     drive.ask("leave")
-    assert of(drive.steps(2), "fault")[-1] == BROWSER_LOST
+    assert of(drive.steps(2), "fault")[-1] == Fault.PAGE_LOST
 
 
 def test_input_is_told_as_applied_in_the_step_that_applied_it(rig: MakeRig) -> None:
@@ -204,12 +193,12 @@ def test_loop_that_was_stuck_finds_its_trial_paused_and_can_resume(
     drive.steps(80)
     drive.shared.mailbox.put(stalled=1.0)  # as the watchdog does
     frames = drive.steps(10)
-    assert of(frames, "fault")[-1] == STALLED
-    assert of(frames, "run_state")[-1] == PAUSED
+    assert of(frames, "fault")[-1] == Fault.STALLED
+    assert of(frames, "run_state")[-1] == RunState.PAUSED
     assert (of(frames, "wheel_torque")[4:] == 0.0).all()
     drive.ask("resume")
     frames = drive.steps(70)
-    assert (of(frames, "run_state")[1:] == RUNNING).all()
+    assert (of(frames, "run_state")[1:] == RunState.RUNNING).all()
     assert of(frames, "fade")[2] < 0.1  # anew, from nothing
 
 
@@ -224,11 +213,11 @@ def test_wheel_opened_anew_after_a_stall_may_first_have_to_be_turned(
     drive.steps(2)
     monkeypatch.setattr(SimulatedWheel, "is_awake", False, raising=False)
     drive.ask("resume")
-    assert of(drive.steps(1), "run_state")[-1] == PAUSED
-    assert "turn the wheel by 10 degrees" in drive.heard()[-1].text
+    assert of(drive.steps(1), "run_state")[-1] == RunState.PAUSED
+    assert "turn the wheel by 10 degrees" in drive.heard()[-1].note
     drive.driving._cabin.wheel.is_awake = True  # type: ignore[union-attr]
     drive.ask("resume")
-    assert of(drive.steps(1), "run_state")[-1] == RUNNING
+    assert of(drive.steps(1), "run_state")[-1] == RunState.RUNNING
 
 
 @pytest.mark.parametrize("where", ["waiting", "paused"])
@@ -236,12 +225,12 @@ def test_trial_whose_wheel_was_lost_can_be_restarted(rig: MakeRig, where: str) -
     drive = rig(wheel_setup(unplug_at=0.2))
     if where == "paused":
         drive.ask("start")
-    assert of(drive.steps(20), "fault")[-1] == WHEEL_LOST
+    assert of(drive.steps(20), "fault")[-1] == Fault.WHEEL_LOST
     drive.ask("restart")
     drive.ask("start")
     frames = drive.steps(5)
-    assert of(frames, "run_state")[-1] == RUNNING
-    assert of(frames, "fault")[-1] == NO_FAULT
+    assert of(frames, "run_state")[-1] == RunState.RUNNING
+    assert of(frames, "fault")[-1] == Fault.NONE
 
 
 def test_number_that_is_not_finite_pauses_the_trial_without_torque(
@@ -252,12 +241,12 @@ def test_number_that_is_not_finite_pauses_the_trial_without_torque(
     drive.steps(70)
     drive.driving._cabin.memory.motion[:] = np.nan
     frames = drive.steps(10)
-    assert of(frames, "run_state")[-1] == PAUSED
-    assert of(frames, "fault")[-1] == NOT_FINITE
+    assert of(frames, "run_state")[-1] == RunState.PAUSED
+    assert of(frames, "fault")[-1] == Fault.NOT_FINITE
     assert (of(frames, "wheel_torque")[4:] == 0.0).all()
     drive.ask("resume")
     drive.steps(1)
-    assert "restart" in drive.heard()[-1].text
+    assert "restart" in drive.heard()[-1].note
     drive.ask("restart")
     drive.ask("start")
     assert np.isfinite(of(drive.steps(5), "lateral_position")).all()
@@ -268,11 +257,11 @@ def test_trial_does_not_begin_before_the_wheel_tells_its_angle(rig: MakeRig) -> 
     wheel = drive.driving._cabin.wheel
     wheel.is_awake = False  # type: ignore[union-attr]  # as SDL2 has it after opening
     drive.ask("start")
-    assert of(drive.steps(1), "run_state")[-1] == WAITING
-    assert "turn the wheel by 10 degrees" in drive.heard()[-1].text
+    assert of(drive.steps(1), "run_state")[-1] == RunState.WAITING
+    assert "turn the wheel by 10 degrees" in drive.heard()[-1].note
     wheel.is_awake = True  # type: ignore[union-attr]  # it was turned
     drive.ask("start")
-    assert of(drive.steps(1), "run_state")[-1] == RUNNING
+    assert of(drive.steps(1), "run_state")[-1] == RunState.RUNNING
 
 
 def test_trial_does_not_begin_with_a_turned_wheel(rig: MakeRig) -> None:
@@ -281,5 +270,5 @@ def test_trial_does_not_begin_with_a_turned_wheel(rig: MakeRig) -> None:
     drive.steps(30)
     drive.ask("start")
     frames = drive.steps(2)
-    assert of(frames, "run_state")[-1] == WAITING
-    assert "straight" in drive.heard()[-1].text
+    assert of(frames, "run_state")[-1] == RunState.WAITING
+    assert "straight" in drive.heard()[-1].note

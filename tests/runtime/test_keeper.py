@@ -34,7 +34,7 @@ class Kept:
         """Drive on."""
         self.rig.steps(number)
         for heard in self.rig.heard():
-            self.keeper.mark(heard._asdict(), self.rig.shared)
+            self.keeper.mark(heard, self.rig.shared)
 
     def records(self) -> list[TrialRecord]:
         """Everything that was kept, whole."""
@@ -72,7 +72,7 @@ def test_what_was_chosen_before_the_start_describes_the_record(
     drive: Callable[[DriveSetup], Kept],
 ) -> None:
     kept = drive(drive_setup("strong-normal"))
-    kept.ask("condition", "weak-gentle")
+    kept.ask("set", "condition", "weak-gentle")
     kept.ask("set", "lateral_error_gain", 2.0)
     kept.ask("start")
     kept.steps(40)
@@ -84,7 +84,7 @@ def test_what_was_chosen_before_the_start_describes_the_record(
     assert record.metadata["change_duration"] == 8.0
     assert controller(record)["guidance"]["lateral_error_gain"] == 2.0
     assert controller(record)["preview"]["preview_time"] == 1.5  # changed later
-    assert kinds(record) == ["started", "gain"]
+    assert kinds(record) == ["started", "parameter"]
     times = record.columns["time"]
     assert times[0] == 0.0
     np.testing.assert_allclose(np.diff(times), 1 / 60)
@@ -102,7 +102,7 @@ def test_restart_begins_a_record_with_its_first_row_and_what_was_tuned(
     kept.ask("start")
     kept.steps(30)
     first, second = sorted(kept.records(), key=lambda r: -len(r.columns["time"]))
-    assert kinds(first) == ["started", "gain"]
+    assert kinds(first) == ["started", "parameter"]
     assert kinds(second) == ["started"]
     assert second.columns["time"][0] == 0.0
     assert len(second.columns["time"]) == 31
@@ -110,17 +110,52 @@ def test_restart_begins_a_record_with_its_first_row_and_what_was_tuned(
     assert controller(second)["guidance"]["lateral_error_gain"] == 2.0
 
 
+def test_record_says_what_was_changed_from_what_to_what_in_which_unit_and_when(
+    drive: Callable[[DriveSetup], Kept],
+) -> None:
+    kept = drive(drive_setup("strong-normal"))
+    kept.ask("start")
+    kept.steps(59)
+    kept.ask("set", "condition", "weak-normal")
+    kept.steps(59)
+    kept.ask("set", "lateral_error_gain", 2.25)
+    kept.steps(59)
+    kept.ask("set", "method", "manual")
+    kept.ask("pause", "driver")
+    (record,) = kept.records()
+    markers: Any = record.metadata["markers"]
+    times = [marker.pop("time") for marker in markers]
+    strength = {"kind": "parameter", "name": "strength_factor", "unit": "-"}
+    assert markers == [
+        {"kind": "started"},
+        {"kind": "condition", "before": "strong-normal", "after": "weak-normal"},
+        {**strength, "before": 1.0, "after": 0.4},
+        {
+            "kind": "parameter",
+            "name": "lateral_error_gain",
+            "before": 1.5,
+            "after": 2.25,
+            "unit": "N·m/m",
+        },
+        {"kind": "method", "before": "ibhs", "after": "manual"},
+        {**strength, "before": 0.4, "after": 0.0},
+        {"kind": "paused", "name": "driver"},
+    ]
+    # A command is heard before the next row is computed: one row after its second.
+    np.testing.assert_allclose(times, np.repeat([0, 1, 2, 3], [1, 2, 1, 3]), atol=0.02)
+
+
 def test_manual_start_says_manual_and_a_condition_after_it_is_a_marker(
     drive: Callable[[DriveSetup], Kept],
 ) -> None:
     kept = drive(drive_setup("manual"))
     kept.ask("start")
-    kept.ask("condition", "strong-rapid")
+    kept.ask("set", "condition", "strong-rapid")
     kept.steps(20)
     (record,) = kept.records()
     assert record.metadata["condition"] == "manual"
     assert np.isnan(record.metadata["change_duration"] or np.nan)
-    assert kinds(record) == ["started", "condition", "gain", "gain"]
+    assert kinds(record) == ["started", "condition", "parameter", "parameter"]
     assert record.columns["mode"][0] == "manual"
     assert record.columns["mode"][-1] == "lane_keeping"
 
@@ -142,7 +177,7 @@ def test_drive_that_never_starts_leaves_no_file(
     drive: Callable[[DriveSetup], Kept], tmp_path: Path
 ) -> None:
     kept = drive(drive_setup())
-    kept.ask("condition", "manual")
+    kept.ask("set", "condition", "manual")
     kept.steps(10)
     assert kept.records() == []
     assert list((tmp_path / "out").iterdir()) == []

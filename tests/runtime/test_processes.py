@@ -16,11 +16,13 @@ import pytest
 from numpy.typing import NDArray
 
 from costeer.devices.wheels.simulated import SpringHands, simulated_description
+from costeer.export.markers import markers_of
 from costeer.records.record import read_record, read_stream
 from costeer.runtime.drive import Drive, Listener
-from costeer.runtime.frame import PLACE, STALLED
+from costeer.runtime.frame import PLACE
+from costeer.runtime.markers import Marker
 from costeer.runtime.setup import DriveSetup
-from costeer.runtime.stream import Marker
+from costeer.runtime.states import Fault
 from tests.runtime.rig import drive_setup, wheel_setup
 
 PATIENCE = 20.0
@@ -42,7 +44,7 @@ class Kept:
 
     def kinds(self) -> list[object]:
         """Kinds of all markers so far."""
-        return [marker["kind"] for marker in self.markers]
+        return [marker.kind for marker in self.markers]
 
 
 Begin = Callable[[DriveSetup, Path | None], tuple[Drive, Kept]]
@@ -72,6 +74,28 @@ def wait_for(fact: Callable[[], object]) -> None:
     while not fact():
         assert time.monotonic() < deadline, "it did not come to pass"
         time.sleep(0.01)
+
+
+def test_change_goes_from_the_command_to_the_record_with_all_its_fields(
+    begin: Begin, tmp_path: Path
+) -> None:
+    drive, kept = begin(drive_setup("strong-normal"), tmp_path / "trial.parquet")
+    drive.send("start")
+    wait_for(lambda: kept.frames and kept.column("time")[-1] > 0.5)
+    drive.send("set", "method", "manual")
+    drive.send("set", "preview_time", 1.75)
+    wait_for(lambda: len(kept.markers) == 4)
+    drive.stop()
+    markers = markers_of(read_record(drive.kept[0]).metadata)
+    assert markers == kept.markers
+    assert [marker[:5] for marker in markers] == [
+        ("started", "", None, None, ""),
+        ("method", "", "ibhs", "manual", ""),
+        ("parameter", "strength_factor", 1.0, 0.0, "-"),
+        ("parameter", "preview_time", 1.5, 1.75, "s"),
+        ("ended", "server", None, None, ""),
+    ]
+    assert 0.5 < markers[1].time <= markers[3].time < PATIENCE
 
 
 def test_drive_keeps_to_the_clock_with_verdicts_and_leaves_its_record(
@@ -132,7 +156,7 @@ def test_wheel_is_let_go_and_the_record_kept_when_the_loop_dies_or_sticks(
     # 80 ms of patience; beyond 100 ms only what a busy machine adds.
     assert time.monotonic() - stopped < 0.4
     wait_for(lambda: "fault" in kept.kinds())
-    assert kept.column("fault")[-1] == STALLED
+    assert kept.column("fault")[-1] == Fault.LOOP_GONE
     wait_for(lambda: drive.kept)
     driven = read_record(drive.kept[0]).columns["time"]
     assert driven[-1] > kept.column("time")[-1] - 0.3
@@ -182,7 +206,10 @@ def test_killed_server_leaves_the_stream_and_the_loop_ends_by_itself(
     script.write_text(SERVER, encoding="utf-8")
     path = tmp_path / "trial.parquet"
     command = [sys.executable, str(script), str(path)]
-    environment = {**os.environ, "PYTHONPATH": str(Path.cwd())}
+    environment = {
+        **os.environ,
+        "PYTHONPATH": os.pathsep.join([str(Path.cwd()), *sys.path]),
+    }
     with subprocess.Popen(
         command, stdout=subprocess.PIPE, text=True, env=environment
     ) as server:

@@ -13,12 +13,14 @@ import numpy as np
 import pyarrow.parquet as pq
 import pytest
 
+from costeer.export.markers import markers_of
 from costeer.loop.rows import ROW_COLUMNS
 from costeer.loop.scenario import TrialSetup
 from costeer.records.record import read_record, read_recording, read_stream
 from costeer.runtime.frame import TRACE_COLUMNS
+from costeer.runtime.markers import Marker
 from costeer.runtime.recorder import drive_metadata
-from costeer.runtime.setup import DriveSetup, trial_setup
+from costeer.runtime.setup import DriveSetup
 from costeer.runtime.stream import (
     RecordStream,
     check_free,
@@ -27,9 +29,7 @@ from costeer.runtime.stream import (
     record_paths,
 )
 
-METADATA = drive_metadata(
-    DriveSetup(trial=trial_setup("strong-normal", "ibhs", TrialSetup()))
-)
+METADATA = drive_metadata(DriveSetup(trial=TrialSetup(condition="strong-normal")))
 
 
 def rows(first: int, number: int) -> np.ndarray:  # type: ignore[type-arg]
@@ -50,15 +50,15 @@ def test_streams_become_the_record_with_its_markers_and_the_trace(
     paths = record_paths(tmp_path / "trial.parquet")
     stream = RecordStream(paths, METADATA)
     stream.write(rows(0, 15), np.full(15, True), [])
-    gain = {"time": 0.25, "kind": "gain", "text": "preview_time 1.5 -> 2 s"}
+    gain = Marker("parameter", "preview_time", 1.5, 2.0, "s", 0.25)
     stream.write(rows(15, 15), np.arange(15) < 5, [gain])
-    ended = {"time": 0.5, "kind": "ended", "text": ""}
+    ended = Marker("ended", "course", time=0.5)
     stream.write(rows(30, 0), np.full(0, True), [ended])
     stream.write_trace(np.ones((32, len(TRACE_COLUMNS))))
     stream.close()
     assert finish(paths, stream.num_rows)
     record = read_record(paths.record)
-    assert record.metadata["markers"] == [gain, ended]
+    assert markers_of(record.metadata) == [gain, ended]
     assert record.metadata["condition"] == "strong-normal"
     np.testing.assert_array_equal(record.columns["time"], np.arange(30) / 60.0)
     # Ten rows were driven in manual: no guidance is claimed there.
@@ -76,7 +76,7 @@ def test_streams_become_the_record_with_its_markers_and_the_trace(
 def test_drive_that_never_began_leaves_nothing(tmp_path: Path) -> None:
     paths = record_paths(tmp_path / "trial.parquet")
     stream = RecordStream(paths, METADATA)
-    marker = {"time": 0.0, "kind": "condition", "text": "manual"}
+    marker = Marker("condition", before="strong-normal", after="manual")
     stream.write(rows(0, 0), np.full(0, True), [marker])
     stream.close()
     assert not finish(paths, stream.num_rows)

@@ -10,11 +10,10 @@ import numpy as np
 import pytest
 
 from costeer.runtime.frame import FRAME_COLUMNS, PLACE
+from costeer.runtime.markers import Marker
 from costeer.runtime.tunables import TUNABLES
 from costeer.web.drive import DriveOnPages, PageOptions
 from costeer.web.messages import (
-    ChooseCondition,
-    ChooseMethod,
     Indicator,
     Input,
     Latency,
@@ -58,12 +57,12 @@ def sent(session: DriveOnPages) -> Sent:
         (Start(), ("start",)),
         (Resume(), ("resume",)),
         (Restart(), ("restart",)),
-        (Pause(), ("pause", "by the experimenter")),
+        (Pause(), ("pause", "experimenter")),
         (Indicator(-1), ("indicator", -1)),
         (Set("preview_time", 2.0), ("set", "preview_time", 2.0)),
-        (ChooseCondition("weak-rapid"), ("condition", "weak-rapid")),
-        (ChooseMethod("manual"), ("method", "manual")),
-        (Stop(), ("pause", "stopped by the experimenter")),
+        (Set("condition", "weak-rapid"), ("set", "condition", "weak-rapid")),
+        (Set("method", "manual"), ("set", "method", "manual")),
+        (Stop(), ("pause", "stop")),
     ],
 )
 def test_message_becomes_a_command(
@@ -78,8 +77,9 @@ def test_message_becomes_a_command(
     [
         (Set("preview_time", 99.0), "from 0.5 to 3 s"),
         (Set("mass", 1.0), "cannot be tuned"),
-        (ChooseCondition("strongest"), "strongest"),
-        (ChooseMethod("magic"), "magic"),
+        (Set("condition", "strongest"), "strongest"),
+        (Set("method", "magic"), "magic"),
+        (Set("preview_time", "long"), "'long'; give a number"),
     ],
 )
 def test_what_cannot_be_is_refused_before_it_reaches_the_loop(
@@ -151,6 +151,27 @@ def test_hello_names_every_number_of_a_frame_and_hides_what_participants_may_not
     assert driver["conditions"] == experimenter["conditions"]
 
 
+def test_hello_tells_states_and_faults_by_their_numbers_in_a_frame(
+    session: DriveOnPages,
+) -> None:
+    hello: Any = session.hello("driver")
+    states = {each["code"]: each for each in hello["run_states"]}
+    faults = {each["code"]: each for each in hello["faults"]}
+    assert [states[code]["name"] for code in range(4)] == [
+        *("waiting", "running", "paused", "ended")
+    ]
+    assert [states[code]["goes_on_by"] for code in range(4)] == [
+        *("start", "", "resume", "")
+    ]
+    assert faults[0]["text"] == ""
+    assert [faults[code]["name"] for code in range(1, 7)] == [
+        *("wheel_lost", "page_lost", "sensor_stale"),
+        *("not_finite", "stalled", "loop_gone"),
+    ]
+    final = [each["name"] for each in faults.values() if not each["can_resume"]]
+    assert final == ["not_finite", "loop_gone"]
+
+
 def told_of(session: DriveOnPages) -> list[dict[str, Any]]:
     """Let the session send to a list."""
     told: list[dict[str, Any]] = []
@@ -159,20 +180,22 @@ def told_of(session: DriveOnPages) -> list[dict[str, Any]]:
 
 
 @pytest.mark.parametrize(
-    ("kind", "text", "name", "value"),
+    ("marker", "name", "value"),
     [
-        ("gain", "preview_time 1.5 -> 2.25 s", "preview_time", 2.25),
-        ("gain", "strength_factor 1 -> 0.4 -", "strength_factor", 0.4),
-        ("condition", "strong-normal -> weak-gentle", "preview_time", 1.5),
-        ("method", "ibhs -> manual", "preview_time", 1.5),
+        (Marker("parameter", "preview_time", 1.5, 2.25, "s"), "preview_time", 2.25),
+        (Marker("parameter", "strength_factor", 1.0, 0.4), "strength_factor", 0.4),
+        (Marker("condition", before="a", after="weak-gentle"), "preview_time", 1.5),
+        (Marker("method", before="ibhs", after="manual"), "preview_time", 1.5),
     ],
 )
 def test_change_is_told_to_all_pages_with_the_values_that_hold_now(
-    session: DriveOnPages, kind: str, text: str, name: str, value: float
+    session: DriveOnPages, marker: Marker, name: str, value: float
 ) -> None:
     told = told_of(session)
-    session._mark({"time": 1.0, "kind": kind, "text": text})
-    assert told[0] == {"type": "marker", "time": 1.0, "kind": kind, "text": text}
+    session._mark(marker._replace(time=1.0))
+    assert told[0]["type"] == "marker"
+    assert (told[0]["time"], told[0]["after"]) == (1.0, marker.after)
+    assert " → " in told[0]["text"]
     values = {each["name"]: each["value"] for each in told[1]["tunables"]}
     assert values[name] == value
     tunables: Any = session.hello("experimenter")["tunables"]
@@ -180,21 +203,21 @@ def test_change_is_told_to_all_pages_with_the_values_that_hold_now(
 
 
 def test_condition_and_method_are_told_as_they_are_now(session: DriveOnPages) -> None:
-    session._mark({"time": 1.0, "kind": "condition", "text": "a -> weak-gentle"})
-    session._mark({"time": 1.0, "kind": "method", "text": "ibhs -> manual"})
+    session._mark(Marker("condition", before="a", after="weak-gentle"))
+    session._mark(Marker("method", before="ibhs", after="manual"))
     hello = session.hello("experimenter")
     assert (hello["condition"], hello["method"]) == ("weak-gentle", "manual")
 
 
 def test_what_could_not_be_done_is_told_to_who_drives(session: DriveOnPages) -> None:
     told = told_of(session)
-    session._mark({"time": 1.0, "kind": "error", "text": "the wheel is turned"})
+    session._mark(Marker("error", note="the wheel is turned"))
     assert told == [{"type": "error", "text": "the wheel is turned"}]
 
 
 def test_marker_that_changes_nothing_is_told_alone(session: DriveOnPages) -> None:
     told = told_of(session)
-    session._mark({"time": 1.0, "kind": "paused", "text": "by the driver"})
+    session._mark(Marker("paused", "driver", time=1.0))
     assert [each["type"] for each in told] == ["marker"]
 
 
@@ -216,6 +239,6 @@ def test_whoever_else_listens_is_told_the_same(session: DriveOnPages) -> None:
     markers: list[Any] = []
     session.also(frames.append, markers.append)
     session._tell(np.ones(len(FRAME_COLUMNS)))
-    session._mark({"time": 0.0, "kind": "started", "text": ""})
+    session._mark(Marker("started"))
     assert len(frames) == 1
-    assert markers[0]["kind"] == "started"
+    assert markers == [Marker("started")]

@@ -120,8 +120,14 @@ def test_experimenter_tunes_what_the_drivers_page_cannot(tmp_path: Path) -> None
     assert wrong == []
     markers = markers_of(record)
     kinds = [marker["kind"] for marker in markers]
-    assert kinds == ["started", "condition", "gain", "gain", "paused", "ended"]
-    assert markers[1]["text"] == "strong-normal -> weak-gentle"
+    assert kinds == [
+        *("started", "condition", "parameter", "parameter", "paused", "ended")
+    ]
+    assert (markers[1]["before"], markers[1]["after"]) == (
+        "strong-normal",
+        "weak-gentle",
+    )
+    assert markers[4]["name"] == "driver"
 
 
 def markers_of(record: Path) -> list[dict[str, Any]]:

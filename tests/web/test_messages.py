@@ -11,8 +11,6 @@ from hypothesis import strategies as st
 
 from costeer.web import intake
 from costeer.web.messages import (
-    ChooseCondition,
-    ChooseMethod,
     Indicator,
     Input,
     Latency,
@@ -34,8 +32,18 @@ JSON_VALUES = st.recursive(
     lambda inner: st.lists(inner) | st.dictionaries(st.text(), inner),
     max_leaves=5,
 )
-TYPES = ["input", "ping", "start", "indicator", "latency", "set", "condition"]
-FIELDS = ["sequence", "steer", "accelerator", "brake", "t", "side", "values", "name"]
+TYPES = ["input", "ping", "start", "indicator", "latency", "set"]
+FIELDS = [
+    "sequence",
+    "steer",
+    "accelerator",
+    "brake",
+    "t",
+    "side",
+    "values",
+    "name",
+    "value",
+]
 
 
 def changed(**fields: object) -> str:
@@ -59,8 +67,7 @@ def refused(text: str | bytes) -> str:
         ({"type": "indicator", "side": -1}, Indicator(side=-1)),
         ({"type": "latency", "values": [20, 30.5]}, Latency(values=(20.0, 30.5))),
         ({"type": "set", "name": "gain", "value": 2}, Set(name="gain", value=2.0)),
-        ({"type": "condition", "name": "manual"}, ChooseCondition(name="manual")),
-        ({"type": "method", "name": "ibhs"}, ChooseMethod(name="ibhs")),
+        ({"type": "set", "name": "method", "value": "ibhs"}, Set("method", "ibhs")),
         ({"type": "restart"}, Restart()),
         ({"type": "stop"}, Stop()),
     ],
@@ -101,7 +108,9 @@ def test_every_message_is_understood(
         ('{"type":"latency","values":["1"]}', "each of values is '1'"),
         (json.dumps({"type": "latency", "values": [0] * 61}), "at most 60"),
         ('{"type":"set","name":"","value":1}', "1 to 64 printable"),
-        ('{"type":"condition","name":3}', "name is 3; give a name"),
+        ('{"type":"set","name":3,"value":1}', "name is 3; give a name"),
+        ('{"type":"set","name":"method","value":"\\n"}', "1 to 64 printable"),
+        ('{"type":"set","name":"method","value":null}', "value is None; give a num"),
     ],
 )
 def test_what_is_wrong_is_said(text: str | bytes, told: str) -> None:

@@ -17,7 +17,7 @@ from tests.web.served import fetch, page_files, served
 
 MARKERS = [
     {"time": 2.0, "kind": "paused", "text": "wheel lost"},
-    {"time": 1.0, "name": "gain", "value": 2.5},
+    {"time": 1.0, "kind": "method", "before": "ibhs", "after": "manual"},
     {"kind": "no time"},
     "no marker",
 ]
@@ -90,10 +90,21 @@ def test_hello_describes_the_trial(record: TrialRecord, replay: Replay) -> None:
     }
 
 
-def test_markers_and_changes_come_by_time(replay: Replay) -> None:
+def test_markers_come_by_time_with_their_fields_and_in_words(replay: Replay) -> None:
     assert replay.hello["markers"] == [
-        {"time": 1.0, "kind": "marker", "text": "name gain, value 2.5"},
-        {"time": 2.0, "kind": "paused", "text": "wheel lost"},
+        {
+            "time": 1.0,
+            "kind": "method",
+            "before": "ibhs",
+            "after": "manual",
+            "text": "method: ibhs → manual",
+        },
+        {
+            "time": 2.0,
+            "kind": "paused",
+            "note": "wheel lost",
+            "text": "paused: wheel lost",
+        },
     ]
 
 

@@ -92,7 +92,7 @@ def drive(
     """
     from costeer.cli.devices import chosen_head, chosen_wheel, pseudonym_number
     from costeer.loop.scenario import TrialSetup
-    from costeer.runtime.setup import DriveSetup, trial_setup
+    from costeer.runtime.setup import DriveSetup
     from costeer.runtime.stream import check_free
     from costeer.web.drive import DriveOnPages, PageOptions
     from costeer.web.security import access_for
@@ -101,6 +101,8 @@ def drive(
     if record is not None:
         check_free(record)
     trial = TrialSetup(
+        condition=condition,
+        method=method,
         participant=pseudonym_number(participant),
         seed=seed,
         length=length,
@@ -110,10 +112,9 @@ def drive(
     )
     chosen = chosen_wheel(wheel)
     setup = DriveSetup(
-        trial=trial_setup(condition, method, trial),
+        trial=trial,
         wheel=chosen.description,
         calibration=chosen.calibration,
-        method=method,
         intention=intention,
         keeps_speed=cruise,
         head=chosen_head(head, participant),
@@ -168,7 +169,7 @@ def send_to_lsl(session: DriveOnPages) -> None:
     later = lsl_clock() - time.perf_counter()
     session.also(
         lambda frame: outlet.push(frame.tolist(), frame[PLACE["sent_time"]] + later),
-        lambda marker: outlet.mark(str(marker["kind"]), str(marker["text"])),
+        outlet.mark,
     )
 
 

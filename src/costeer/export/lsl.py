@@ -6,13 +6,16 @@ same laboratory, on one clock. Needs the package `pylsl` (extra `lsl`).
 
 from __future__ import annotations
 
+import json
 from collections.abc import Mapping, Sequence
+
+from costeer.runtime.markers import Marker, as_json
 
 STATE_TYPE = "DrivingState"
 """Type of the stream of numbers."""
 
 MARKER_TYPE = "Markers"
-"""Type of the stream of text, as Lab Streaming Layer has it by custom."""
+"""Type of the stream of markers, as Lab Streaming Layer has it by custom."""
 
 
 def lsl_clock() -> float:
@@ -84,15 +87,15 @@ class TrialOutlet:
             )
         self._state.push_sample([float(value) for value in sample], time)
 
-    def mark(self, kind: str, text: str = "", time: float = 0.0) -> None:
-        """Give one marker, `kind: text`.
+    def mark(self, marker: Marker, time: float = 0.0) -> None:
+        """Give one marker: its fields as a JSON object.
 
         Args:
-            kind: What sort of thing happened.
-            text: What exactly; may be empty.
+            marker: What happened.
             time: When, on the clock of `lsl_clock` [s]; now if 0.
         """
-        self._markers.push_sample([f"{kind}: {text}" if text else kind], time)
+        told = json.dumps(as_json(marker), ensure_ascii=False)
+        self._markers.push_sample([told], time)
 
     def close(self) -> None:
         """Withdraw both streams; nothing can be given any more."""

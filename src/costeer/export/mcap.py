@@ -17,8 +17,9 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from costeer.export.markers import Marker, markers_of
+from costeer.export.markers import markers_of
 from costeer.records.columns import COLUMNS_BY_NAME, TrialRecord, check_time
+from costeer.runtime.markers import Marker, Value, told
 
 SAMPLE = "costeer.TrialSample"
 """Type of the messages on `/trial`, one for each row of the record."""
@@ -117,8 +118,44 @@ def _write_samples(writer: Any, record: TrialRecord) -> None:  # Any: as above
 
 def _write_markers(writer: Any, markers: list[Marker]) -> None:  # Any: as above
     """One message for each marker."""
-    fields = {"time": "double", "kind": "string", "text": "string"}
-    _write_topic(writer, _Topic("/markers", MARKER, fields, {"time": "s"}), markers, 0)
+    topic = _Topic("/markers", MARKER, _MARKER_FIELDS, {"time": "s"})
+    _write_topic(writer, topic, map(_marker_row, markers), 0)
+
+
+_MARKER_FIELDS = {
+    "time": "double",
+    "kind": "string",
+    "name": "string",
+    "before": "double",
+    "after": "double",
+    "unit": "string",
+    "before_name": "string",
+    "after_name": "string",
+    "text": "string",
+}
+
+
+def _marker_row(marker: Marker) -> tuple[float | str, ...]:
+    """A marker in the order of `_MARKER_FIELDS`."""
+    return (
+        marker.time,
+        marker.kind,
+        marker.name,
+        _number(marker.before),
+        _number(marker.after),
+        marker.unit,
+        _name(marker.before),
+        _name(marker.after),
+        told(marker),
+    )
+
+
+def _number(value: Value) -> float:
+    return value if isinstance(value, float) else math.nan
+
+
+def _name(value: Value) -> str:
+    return value if isinstance(value, str) else ""
 
 
 def _write_topic(

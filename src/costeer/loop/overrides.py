@@ -54,6 +54,8 @@ def built(
             of range.
     """
     usual = method.parameters(condition, world.car, world.column, world.road)
+    if not values:
+        return world._replace(controller=usual)
     known = {each.name for each in described(world._replace(controller=usual))}
     named = {_full_name(name, known): value for name, value in values.items()}
     own = {name: v for name, v in named.items() if name.startswith(METHOD)}

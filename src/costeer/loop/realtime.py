@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -113,6 +113,30 @@ def person_memory(method: Method[P, S], parameters: LoopParameters[P]) -> Person
         held=packed(_HELD),
         wheel=packed(_WHEEL),
         row=np.full(len(ROW_COLUMNS), np.nan),
+    )
+
+
+def with_method(
+    memory: PersonMemory,
+    before: Method[Any, Any],
+    method: Method[P, S],
+    parameters: LoopParameters[P],
+    lane: float,
+) -> PersonMemory:
+    """Memory of a drive that goes on with another method.
+
+    Args:
+        memory: Of the drive.
+        before: The method until now.
+        method: From now on; it begins by keeping the lane.
+        parameters: Of the drive, with those of the new method.
+        lane: That the car is in [-].
+    """
+    usual = LoopParameters(controller=usual_parameters(before))
+    old = unpack(initial_control(rule_of(before), usual), memory.state)
+    own = method.initial_state(parameters.controller, lane)
+    return memory._replace(
+        parameters=packed(parameters), state=packed(old._replace(method=own))
     )
 
 

@@ -7,12 +7,12 @@ test calls them as fast as it likes and gets the same numbers.
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from costeer.base.packing import leaf_names
+from costeer.base.packing import leaf_names, packed
 from costeer.devices.wheels.calibration import observer_parameters
 from costeer.devices.wheels.interface import Wheel, WheelReading
 from costeer.loop.parameters import LoopParameters
@@ -27,8 +27,12 @@ from costeer.loop.realtime import (
     observer_tick,
     person_memory,
     wheel_tick,
+    with_method,
 )
-from costeer.methods.interface import Tunable
+from costeer.loop.rows import ROW_COLUMNS
+from costeer.methods.conditions import CONDITION_NAMES
+from costeer.methods.interface import rule_of
+from costeer.methods.registry import AnyMethod, method_named
 from costeer.plant.parameters import CarParameters
 from costeer.runtime.guard import GuardParameters, GuardState
 from costeer.runtime.guard import step as guarded
@@ -47,6 +51,8 @@ from costeer.runtime.setup import (
     DriveSetup,
     drive_method,
     drive_parameters,
+    offered_methods,
+    under,
 )
 from costeer.runtime.tunables import place_of
 from costeer.sensing.torque_observer import TorqueObserverParameters
@@ -54,6 +60,8 @@ from costeer.sensing.torque_observer import TorqueObserverParameters
 _MOTION = leaf_names(initial_motion(LoopParameters(controller=0.0)))
 _ANGLE = _MOTION.index("plant.world.column.steering_wheel_angle")
 _RATE = _MOTION.index("plant.world.column.steering_wheel_rate")
+_LANE = ROW_COLUMNS.index("lane")
+_ASSISTED = CONDITION_NAMES[-1]
 _SPEED = _MOTION.index("plant.world.vehicle.longitudinal_velocity")
 
 STRAIGHT = 0.35
@@ -112,11 +120,8 @@ class Cabin:
         self.begin()
 
     def begin(self) -> None:
-        """Put the car at the start of the course; tuned values stay."""
-        tuned = getattr(self, "memory", None)
+        """Put the car at the start of the course; what was chosen stays."""
         self.memory = person_memory(self.method, self._parameters)
-        if tuned is not None:
-            self.memory.parameters[:] = tuned.parameters
         self.hands = HandsState()
         keeps = self._setup.keeps_speed
         speed = self._setup.trial.speed
@@ -125,6 +130,8 @@ class Cabin:
 
     def warm_up(self) -> None:
         """Compile all that will run, on a drive that is thrown away."""
+        for place in offered_methods(self._setup).values():
+            self._first_step(method_named(place))
         memory = person_memory(self.method, self._parameters)
         if self._setup.wheel is None:
             hands_tick(memory.plant, memory.motion, memory.held)
@@ -132,6 +139,20 @@ class Cabin:
         wheel_tick(memory.plant, memory.motion, memory.held, memory.wheel)
         observer = observer_memory(self._observed_device(), 0.0)
         observer_tick(observer.parameters, observer.state, observer.reading, PLANT_DT)
+
+    def _first_step(self, method: AnyMethod) -> None:
+        """Let a method that may be chosen later take a step that nobody sees."""
+        now = under(self._setup, _ASSISTED, method.name)
+        memory = person_memory(drive_method(now), drive_parameters(now))
+        control_tick(drive_method(now))(
+            memory.parameters,
+            memory.state,
+            memory.motion,
+            memory.given,
+            self._setup.wheel is not None,
+            memory.held,
+            memory.row,
+        )
 
     def first_row(self) -> NDArray[np.float64]:
         """The row of the car at rest in time; nothing is stepped."""
@@ -164,24 +185,25 @@ class Cabin:
             return self.reading.steering_wheel_angle
         return float(self.memory.motion[_ANGLE])
 
-    def tune(self, tunable: Tunable, value: float) -> float:
-        """Set a tunable; return what it was."""
-        place = place_of(self.method, tunable)
-        before = float(self.memory.parameters[place])
-        self.memory.parameters[place] = value
-        return before
+    def take_on(self, method: AnyMethod, parameters: LoopParameters[Any]) -> None:
+        """Drive on with a method and parameters; the car does not notice."""
+        if rule_of(method) != rule_of(self.method):
+            self._tick = control_tick(method)
+            lane = float(self.memory.row[_LANE])
+            self.memory = with_method(
+                self.memory, self.method, method, parameters, lane
+            )
+        else:
+            self.memory.parameters[:] = packed(parameters)
+        self.method, self._parameters = method, parameters
 
     @property
     def strength(self) -> float:
         """Strength factor of the guidance now; 0 without assistance [-]."""
         for tunable in self.method.tunables:
             if tunable.name == "strength_factor":
-                return self.value_of(tunable)
+                return float(self.memory.parameters[place_of(self.method, tunable)])
         return 1.0 if self.method.assists else 0.0
-
-    def value_of(self, tunable: Tunable) -> float:
-        """What a tunable is now."""
-        return float(self.memory.parameters[place_of(self.method, tunable)])
 
     def control(self, controls: Controls) -> NDArray[np.float64]:
         """One control step; returns the row, which the next call overwrites."""

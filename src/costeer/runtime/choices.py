@@ -2,14 +2,113 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
+from typing import Any, NamedTuple
 
+from costeer.base.packing import packed, unpack
+from costeer.loop.parameters import LoopParameters
 from costeer.methods.conditions import CONDITION_NAMES, condition
 from costeer.methods.registry import method_named
 from costeer.runtime.cabin import Cabin
-from costeer.runtime.setup import DriveSetup, strength_of
-from costeer.runtime.tunables import checked_value, tunable_named
+from costeer.runtime.markers import Kind, Marker
+from costeer.runtime.setup import (
+    DriveSetup,
+    drive_method,
+    drive_parameters,
+    under,
+)
+from costeer.runtime.tunables import checked_value, place_of, tunable_named
+
+_OF_THE_CONDITION = ("strength_factor", "change_duration")
+"""Tunables that a condition sets anew."""
+
+Values = dict[str, float]
+
+
+class Chosen(NamedTuple):
+    """What holds in a drive.
+
+    Attributes:
+        condition: Its name.
+        method: Its name.
+        tuned: Values of tunables that were changed, each in its unit, by the name of
+            the method and their own.
+    """
+
+    condition: str
+    method: str
+    tuned: dict[str, Values]
+
+
+def first_choice(setup: DriveSetup) -> Chosen:
+    """What holds when a drive begins."""
+    return Chosen(setup.trial.condition, method_named(setup.trial.method).name, {})
+
+
+def followed(chosen: Chosen, marker: Marker) -> Chosen:
+    """What holds after a marker; the same object if that changed nothing."""
+    match marker:
+        case Marker(kind="condition", after=str(name)):
+            kept = {
+                method: {n: v for n, v in values.items() if n not in _OF_THE_CONDITION}
+                for method, values in chosen.tuned.items()
+            }
+            return chosen._replace(condition=name, tuned=kept)
+        case Marker(kind="method", after=str(name)):
+            return chosen._replace(method=name)
+        case Marker(kind="parameter", after=float(value)):
+            own = {**chosen.tuned.get(chosen.method, {}), marker.name: value}
+            return chosen._replace(tuned={**chosen.tuned, chosen.method: own})
+    return chosen
+
+
+def chosen_setup(setup: DriveSetup, chosen: Chosen) -> DriveSetup:
+    """The drive under what was chosen, without tuned values."""
+    return under(setup, chosen.condition, chosen.method)
+
+
+def chosen_parameters(setup: DriveSetup, chosen: Chosen) -> LoopParameters[Any]:
+    """All parameters of the loop under what was chosen."""
+    now = chosen_setup(setup, chosen)
+    method, parameters = drive_method(now), drive_parameters(now)
+    values = packed(parameters)
+    for name, value in chosen.tuned.get(chosen.method, {}).items():
+        values[place_of(method, tunable_named(method, name))] = value
+    return unpack(parameters, values)
+
+
+def tuned_values(setup: DriveSetup, chosen: Chosen) -> Values:
+    """Every tunable of the method that runs, changed or not."""
+    method = drive_method(chosen_setup(setup, chosen))
+    values = packed(chosen_parameters(setup, chosen))
+    return {
+        each.name: float(values[place_of(method, each)]) for each in method.tunables
+    }
+
+
+def checked_choice(
+    setup: DriveSetup, chosen: Chosen, name: str, value: float | str
+) -> float | str:
+    """What is to be set, if it can be.
+
+    Args:
+        setup: Of the drive.
+        chosen: What holds.
+        name: `condition`, `method`, or of a tunable.
+        value: A name for the first two, else a number in the tunable's unit.
+
+    Raises:
+        ValueError: If there is none of that name, or the value is out of range.
+    """
+    if name == "condition":
+        return condition(str(value)).name
+    if name == "method":
+        under(setup, chosen.condition, str(value))
+        return str(value)
+    tunable = tunable_named(drive_method(chosen_setup(setup, chosen)), name)
+    if isinstance(value, str):
+        raise ValueError(f"{name} is {value!r}; give a number")
+    return float(checked_value(tunable, value))
 
 
 class Choices:
@@ -18,58 +117,55 @@ class Choices:
     Args:
         cabin: Of the drive.
         setup: Of the drive, with what holds at the start.
-        mark: Takes kind and text of a marker.
+        mark: Takes a marker; its time is filled in there.
     """
 
     def __init__(
-        self, cabin: Cabin, setup: DriveSetup, mark: Callable[[str, str], None]
+        self, cabin: Cabin, setup: DriveSetup, mark: Callable[[Marker], None]
     ) -> None:
         self._cabin = cabin
-        self._condition = setup.trial.condition
-        self._method = setup.method
+        self._setup = setup
+        self._chosen = first_choice(setup)
         self._mark = mark
+        for method in offered_methods(setup):  # while nobody waits
+            for name in CONDITION_NAMES:
+                drive_parameters(under(setup, name, method))
 
     @property
     def number(self) -> float:
         """Of the condition, in the order of `CONDITION_NAMES`."""
-        return float(CONDITION_NAMES.index(self._condition))
+        return float(CONDITION_NAMES.index(self._chosen.condition))
 
-    def set(self, name: str, value: float) -> None:
-        """Set a tunable.
-
-        Raises:
-            ValueError: If there is none of that name, or the value is out of range.
-        """
-        tunable = tunable_named(self._cabin.method, name)
-        before = self._cabin.tune(tunable, checked_value(tunable, value))
-        if before != value:
-            self._mark("gain", f"{name} {before:.9g} -> {value:.9g} {tunable.unit}")
-
-    def choose_condition(self, name: str) -> None:
-        """Drive on under a condition: its strength and its duration.
+    def set(self, name: str, value: float | str) -> None:
+        """Drive on with another condition, method or value of a tunable.
 
         Raises:
-            ValueError: If there is none of that name.
+            ValueError: As `checked_choice`.
         """
-        chosen = condition(name)
-        self._mark("condition", f"{self._condition} -> {chosen.name}")
-        self._condition = chosen.name
-        self._apply_strength()
-        if math.isfinite(chosen.change_duration):
-            self.set("change_duration", chosen.change_duration)
+        value = checked_choice(self._setup, self._chosen, name, value)
+        before = tuned_values(self._setup, self._chosen)
+        if name in ("condition", "method"):
+            was = getattr(self._chosen, name)
+            kind: Kind = "condition" if name == "condition" else "method"
+            self._take(Marker(kind, before=was, after=value))
+            self._tell_changes(before)
+        elif before[name] != value:
+            self._take(self._parameter(name, before[name], float(value)))
+        now = chosen_setup(self._setup, self._chosen)
+        parameters = chosen_parameters(self._setup, self._chosen)
+        self._cabin.take_on(drive_method(now), parameters)
 
-    def choose_method(self, name: str) -> None:
-        """Drive on with a method.
+    def _take(self, marker: Marker) -> None:
+        self._chosen = followed(self._chosen, marker)
+        self._mark(marker)
 
-        Raises:
-            ValueError: If there is none of that name.
-        """
-        method_named(name)
-        self._mark("method", f"{self._method} -> {name}")
-        self._method = name
-        self._apply_strength()
+    def _tell_changes(self, before: Values) -> None:
+        """Mark each tunable that another condition or method has changed."""
+        for name, value in tuned_values(self._setup, self._chosen).items():
+            if name in before and before[name] != value:
+                self._mark(self._parameter(name, before[name], value))
 
-    def _apply_strength(self) -> None:
-        """The strength factor that condition and method ask for together."""
-        factor = strength_of(condition(self._condition), self._method)
-        self.set("strength_factor", factor)
+    def _parameter(self, name: str, before: float, after: float) -> Marker:
+        method = drive_method(chosen_setup(self._setup, self._chosen))
+        unit = tunable_named(method, name).unit
+        return Marker("parameter", name, before, after, unit)

@@ -18,13 +18,14 @@ from numpy.typing import NDArray
 from costeer.devices.head.process import run_head_process
 from costeer.devices.wheels.registry import emergency_stop
 from costeer.runtime.clock import favour_thread
-from costeer.runtime.frame import FRAME_COLUMNS, PAUSED, PLACE, STALLED
+from costeer.runtime.frame import FRAME_COLUMNS, PLACE
 from costeer.runtime.keeper import Keeper
 from costeer.runtime.links import Links
+from costeer.runtime.markers import Marker
 from costeer.runtime.process import run_realtime
 from costeer.runtime.setup import DriveSetup, check_drive, drive_parameters
 from costeer.runtime.shared import Shared, close_shared, make_shared, open_shared
-from costeer.runtime.stream import Marker
+from costeer.runtime.states import Fault, RunState
 from costeer.runtime.verdicts import run_network
 from costeer.runtime.watchdog import Watched, run_watchdog
 
@@ -33,8 +34,6 @@ START_PATIENCE = 180.0
 
 STOP_PATIENCE = 3.0
 """What a process gets to end by itself [s]."""
-
-LOOP_GONE = "the real-time process has ended; start costeer drive again"
 
 _LISTEN_INTERVAL = 0.05
 
@@ -235,7 +234,7 @@ class Drive:
         try:
             self._commands.send(command)
         except OSError as error:
-            raise ValueError(LOOP_GONE) from error
+            raise ValueError(Fault.LOOP_GONE.text) from error
 
     def press(
         self, sequence: int, steer: float, accelerator: float, brake: float
@@ -285,14 +284,13 @@ class Drive:
         if not self._stopping.is_set():
             self._tell_stalled()
 
-    def _mark(self, when: float, kind: str, text: str) -> None:
+    def _mark(self, marker: Marker) -> None:
         """Keep and pass on a marker."""
-        marker: Marker = {"time": when, "kind": kind, "text": text}
         self._keeper.mark(marker, self.shared)
         self._listener.marker(marker)
 
     def _tell_error(self, text: str) -> None:
-        self._listener.marker({"time": 0.0, "kind": "error", "text": text})
+        self._listener.marker(Marker("error", note=text))
 
     def _look_after_helpers(self) -> None:
         """Say once that a helper is gone; without a watchdog nobody drives on."""
@@ -305,20 +303,20 @@ class Drive:
             if self._realtime is None or not self._realtime.is_alive():
                 return  # the watchdog goes with the loop that it ended
             if name == "watchdog":
-                self.send("pause", _LOST_HELPERS[name])
+                self.send("pause", name)
                 self._out_of_order = _LOST_HELPERS[name]
             self._tell_error(_LOST_HELPERS[name])
 
     def _tell_stalled(self) -> None:
         """Say that the real-time process is gone; what was driven is kept."""
-        self._out_of_order = LOOP_GONE
+        self._out_of_order = Fault.LOOP_GONE.text
         _, frames = self.shared.frames.since(self.shared.frames.written - 1)
         last = frames[-1] if len(frames) else np.full(len(FRAME_COLUMNS), np.nan)
-        last[PLACE["run_state"]] = PAUSED
-        last[PLACE["fault"]] = STALLED
+        last[PLACE["run_state"]] = RunState.PAUSED
+        last[PLACE["fault"]] = Fault.LOOP_GONE
         self._listener.frame(last)
         when = float(np.nan_to_num(last[PLACE["time"]]))
-        self._mark(when, "fault", LOOP_GONE)
+        self._mark(Marker("fault", Fault.LOOP_GONE.word, time=when))
         self._keeper.finish()
 
 

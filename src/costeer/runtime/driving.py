@@ -27,22 +27,10 @@ from costeer.loop.rows import ROW_COLUMNS
 from costeer.plant.road import adjacent_side
 from costeer.runtime.cabin import Cabin, Controls
 from costeer.runtime.choices import Choices
-from costeer.runtime.frame import (
-    BROWSER_LOST,
-    ENDED,
-    FAULTS,
-    FRAME_COLUMNS,
-    NO_FAULT,
-    NOT_FINITE,
-    PAUSED,
-    RUNNING,
-    SENSOR_STALE,
-    STALLED,
-    WAITING,
-    WHEEL_LOST,
-)
+from costeer.runtime.frame import FRAME_COLUMNS
 from costeer.runtime.indicator import Indicator
 from costeer.runtime.links import Links
+from costeer.runtime.markers import Kind, Marker
 from costeer.runtime.patience import (
     PAGE_PATIENCE,
     SERVER_PATIENCE,
@@ -52,6 +40,7 @@ from costeer.runtime.patience import (
 )
 from costeer.runtime.setup import DriveSetup, drive_parameters, leader_draws
 from costeer.runtime.shared import Shared
+from costeer.runtime.states import Fault, RunState
 from costeer.runtime.trace import Tracer
 
 NEVER = math.inf
@@ -105,7 +94,7 @@ class Driving:
         self._indicator = Indicator(self._mark)
         self.stopping = False
         self._stop_at = NEVER
-        self._run_state, self._fault = WAITING, NO_FAULT
+        self._run_state, self._fault = RunState.WAITING, Fault.NONE
         self._compute_time = self._applied = 0.0
         self._leaders = 0
         self._last_event = 0.0
@@ -160,7 +149,7 @@ class Driving:
         self._hear()
         self._indicator.look(self._cabin.reading, self._time)
         self._look_around(start)
-        if self._run_state == RUNNING:
+        if self._run_state == RunState.RUNNING:
             self._applied = self._mailbox.get("input_sequence")
             row = self._cabin.control(self._controls(start))
             self._after(row)
@@ -212,16 +201,16 @@ class Driving:
             self._leaders = int(event)
         self._last_event = event
         if not math.isfinite(row[_POSITION] + row[_ANGLE]):
-            self._break_off(NOT_FINITE)
+            self._break_off(Fault.NOT_FINITE)
         elif row[_POSITION] >= self._road.length:
-            self._run_state = ENDED
-            self._mark("ended", "the end of the course is reached")
+            self._run_state = RunState.ENDED
+            self._mark(Marker("ended", "course"))
 
     def _tell(self, row: Any, lateness: float) -> None:  # Any: an array of float64
         """Put a frame into the ring and wake the server."""
         frame = self._frame
         frame[: len(ROW_COLUMNS)] = row
-        if self._run_state != RUNNING:
+        if self._run_state != RunState.RUNNING:
             frame[_ANGLE] = self._cabin.steering_wheel_angle
         reading = self._cabin.reading
         extra = (
@@ -249,19 +238,19 @@ class Driving:
     def plant_step(self, late: float) -> None:
         """Wheel and car one plant step on."""
         if self._mailbox.get("stalled") > 0.5:
-            self._break_off(STALLED)
-        moving = self._run_state == RUNNING
+            self._break_off(Fault.STALLED)
+        moving = self._run_state == RunState.RUNNING
         start = self._clock()
         try:
-            self._cabin.advance(moving, self._fault != NO_FAULT)
+            self._cabin.advance(moving, self._fault != Fault.NONE)
         except WheelLost:
             self._lose_wheel()
-            self._break_off(WHEEL_LOST)
+            self._break_off(Fault.WHEEL_LOST)
         now = self._clock()
         self._mailbox.put(heartbeat=now)
         reading = self._cabin.reading
         if moving and reading is not None and now - reading.time > WHEEL_PATIENCE:
-            self._break_off(SENSOR_STALE)
+            self._break_off(Fault.SENSOR_STALE)
         if moving:
             self._tracer.put(self._frame[_TIME], late, now - start, self._cabin)
 
@@ -280,21 +269,21 @@ class Driving:
             self.stopping = True
         if now > self._stop_at or (self._cabin.fade == 0.0 and self._stop_at < NEVER):
             self.stopping = True
-        if self._run_state != RUNNING:
+        if self._run_state != RunState.RUNNING:
             return
         if self._setup.needs_page:
             silence = now - self._mailbox.get("page_time")
             if silence > PAGE_PATIENCE:
-                self._break_off(BROWSER_LOST)
+                self._break_off(Fault.PAGE_LOST)
 
-    def _break_off(self, fault: int) -> None:
+    def _break_off(self, fault: Fault) -> None:
         """Pause for a fault; the torque ends at once, the record is kept."""
-        if self._fault in (fault, NOT_FINITE):
+        if self._fault == fault or not self._fault.can_resume:
             return
         self._fault = fault
-        if self._run_state == RUNNING:
-            self._run_state = PAUSED
-        self._mark("fault", FAULTS[fault])
+        if self._run_state == RunState.RUNNING:
+            self._run_state = RunState.PAUSED
+        self._mark(Marker("fault", fault.word))
 
     # Commands
 
@@ -310,45 +299,45 @@ class Driving:
             try:
                 act(*values)
             except (ValueError, OSError) as error:
-                self._mark("error", str(error))
+                self._mark(Marker("error", note=str(error)))
 
-    def _mark(self, kind: str, text: str) -> None:
+    def _mark(self, marker: Marker) -> None:
         """Tell the server what happened, with the time of the trial."""
-        self._links.commands.send(("marker", self._time, kind, text))
+        self._links.commands.send(("marker", marker._replace(time=self._time)))
 
     def _do_stop(self) -> None:
-        if self._run_state in (RUNNING, PAUSED):
-            self._mark("ended", "stopped")
-        self._run_state = ENDED
+        if self._run_state in (RunState.RUNNING, RunState.PAUSED):
+            self._mark(Marker("ended", "server"))
+        self._run_state = RunState.ENDED
         self._stop_at = self._clock() + STOP_PATIENCE
 
     def _do_start(self) -> None:
-        if self._run_state == WAITING:
-            self._begin("started", "")
+        if self._run_state == RunState.WAITING:
+            self._begin("started")
 
     def _do_resume(self) -> None:
-        if self._run_state == PAUSED:
-            self._begin("resumed", "")
+        if self._run_state == RunState.PAUSED:
+            self._begin("resumed")
 
-    def _begin(self, kind: str, text: str) -> None:
+    def _begin(self, kind: Kind) -> None:
         """Run, if wheel and numbers allow it."""
         self._forget_stall()
         if self._setup.wheel is not None and self._cabin.wheel is None:
             self._find_wheel()
-        if self._fault == NOT_FINITE:
-            raise ValueError(FAULTS[NOT_FINITE])
+        if not self._fault.can_resume:
+            raise ValueError(self._fault.text)
         self._cabin.check_wheel()
-        self._fault = NO_FAULT
+        self._fault = Fault.NONE
         self._cabin.meet_wheel()
-        self._run_state = RUNNING
-        self._mark(kind, text)
+        self._run_state = RunState.RUNNING
+        self._mark(Marker(kind))
 
     def _forget_stall(self) -> None:
         """The watchdog has told the wheel to let go: it is to be opened anew, once."""
-        if self._fault == STALLED:
+        if self._fault == Fault.STALLED:
             self._mailbox.put(stalled=0.0)
             self._lose_wheel()
-            self._fault = WHEEL_LOST
+            self._fault = Fault.WHEEL_LOST
 
     def _find_wheel(self) -> None:
         """Open the wheel again; it may take longer than the watchdog waits."""
@@ -360,31 +349,25 @@ class Driving:
             self._mailbox.put(heartbeat=self._clock(), armed=1.0)
 
     def _do_leave(self) -> None:
-        if self._run_state == RUNNING and self._setup.needs_page:
-            self._break_off(BROWSER_LOST)
+        if self._run_state == RunState.RUNNING and self._setup.needs_page:
+            self._break_off(Fault.PAGE_LOST)
 
     def _do_pause(self, why: str) -> None:
-        if self._run_state == RUNNING:
-            self._run_state = PAUSED
-            self._mark("paused", why)
+        if self._run_state == RunState.RUNNING:
+            self._run_state = RunState.PAUSED
+            self._mark(Marker("paused", why))
 
     def _do_restart(self) -> None:
         self._forget_stall()
-        self._fault = NO_FAULT  # a wheel that is lost is looked for at the start
+        self._fault = Fault.NONE  # a wheel that is lost is looked for at the start
         self._cabin.begin()
         self._leaders, self._last_event = 0, 0.0
         self._indicator.forget()
-        self._run_state = WAITING
-        self._mark("restarted", "")
+        self._run_state = RunState.WAITING
+        self._mark(Marker("restarted"))
 
     def _do_indicator(self, side: float) -> None:
         self._indicator.put(float(side), self._time)
 
-    def _do_set(self, name: str, value: float) -> None:
+    def _do_set(self, name: str, value: float | str) -> None:
         self._choices.set(name, value)
-
-    def _do_condition(self, name: str) -> None:
-        self._choices.choose_condition(name)
-
-    def _do_method(self, name: str) -> None:
-        self._choices.choose_method(name)

@@ -27,21 +27,6 @@ FRAME_COLUMNS = (*ROW_COLUMNS, *EXTRA_COLUMNS)
 PLACE = {name: place for place, name in enumerate(FRAME_COLUMNS)}
 """Where each stands."""
 
-WAITING, RUNNING, PAUSED, ENDED = 0, 1, 2, 3
-RUN_STATES = ("waiting", "running", "paused", "ended")
-"""Of a drive, by the number in a frame."""
-
-NO_FAULT, WHEEL_LOST, BROWSER_LOST, SENSOR_STALE, NOT_FINITE, STALLED = range(6)
-FAULTS = (
-    "",
-    "the steering wheel is lost: plug it in and resume",
-    "the page is lost: open it again and resume",
-    "the steering wheel says nothing new: check its cable and resume",
-    "a number was not finite: restart the trial",
-    "the real-time process stood still: resume, and see costeer doctor for priority",
-)
-"""What is wrong, by the number in a frame, and the way out."""
-
 TRACE_COLUMNS = (
     "time",
     "lateness",

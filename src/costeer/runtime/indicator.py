@@ -10,6 +10,7 @@ from costeer.devices.wheels.interface import (
     WheelReading,
 )
 from costeer.loop.tick import REQUEST_DURATION
+from costeer.runtime.markers import Marker
 
 _WORDS = {-1.0: "right", 0.0: "off", 1.0: "left"}
 
@@ -18,10 +19,10 @@ class Indicator:
     """Side of the indicator and what it asks for.
 
     Args:
-        mark: Takes kind and text of a marker.
+        mark: Takes a marker; its time is filled in there.
     """
 
-    def __init__(self, mark: Callable[[str, str], None]) -> None:
+    def __init__(self, mark: Callable[[Marker], None]) -> None:
         self.side = 0.0
         self._mark = mark
         self._asked_until = -1.0
@@ -29,9 +30,9 @@ class Indicator:
 
     def put(self, side: float, now: float) -> None:
         """Set it: -1 right, 0 off, +1 left, at a time of the trial [s]."""
-        self.side = side
+        before, self.side = self.side, side
         self._asked_until = now + REQUEST_DURATION if side else -1.0
-        self._mark("indicator", _WORDS[side])
+        self._mark(Marker("indicator", before=_WORDS[before], after=_WORDS[side]))
 
     def look(self, reading: WheelReading | None, now: float) -> None:
         """A paddle that is pulled sets it, or takes it back."""

@@ -7,16 +7,17 @@ import threading
 from collections.abc import Callable
 from pathlib import Path
 
-from costeer.runtime.recorder import Recorder, drive_metadata
-from costeer.runtime.setup import DriveSetup, trial_setup
-from costeer.runtime.shared import Shared
-from costeer.runtime.stream import (
-    Marker,
-    RecordStream,
-    finish,
-    next_free,
-    record_paths,
+from costeer.runtime.choices import (
+    chosen_parameters,
+    chosen_setup,
+    first_choice,
+    followed,
 )
+from costeer.runtime.markers import Marker
+from costeer.runtime.recorder import Recorder, drive_metadata
+from costeer.runtime.setup import DriveSetup
+from costeer.runtime.shared import Shared
+from costeer.runtime.stream import RecordStream, finish, next_free, record_paths
 
 _NOT_OF_THE_TRIAL = ("error", "restarted")
 """Kinds of markers that say nothing of what was driven."""
@@ -45,8 +46,7 @@ class Keeper:
         self._setup = setup
         self._record = record
         self._tell = tell
-        self._tuned: dict[str, float] = {}
-        self._before: list[Marker] = []
+        self._chosen = first_choice(setup)
         self._recorder: Recorder | None = None
         self._first = (0, 0)
         self._finishing: list[threading.Thread] = []
@@ -59,30 +59,16 @@ class Keeper:
 
     def mark(self, marker: Marker, shared: Shared) -> None:
         """Take a marker: it goes into the record, and begins or ends one."""
-        kind, text = str(marker["kind"]), str(marker["text"])
-        self._follow(kind, text)
-        if kind == "restarted":
+        self._chosen = followed(self._chosen, marker)
+        if marker.kind == "restarted":
             self._first = (shared.frames.written, shared.trace.written)
             self.finish()
-        if kind == "started" and self._recorder is None:
+        if marker.kind == "started" and self._recorder is None:
             self._begin(shared)
-        if kind not in _NOT_OF_THE_TRIAL and self._recorder is not None:
+        if marker.kind not in _NOT_OF_THE_TRIAL and self._recorder is not None:
             self._recorder.mark(marker)
-        if kind == "ended":
+        if marker.kind == "ended":
             self.finish()
-
-    def _follow(self, kind: str, text: str) -> None:
-        """Remember what was chosen."""
-        _, _, new = text.partition(" -> ")
-        trial = self._setup.trial
-        if kind == "condition":
-            trial = trial_setup(new, self._setup.method, trial)
-            self._setup = self._setup._replace(trial=trial)
-        elif kind == "method":
-            trial = trial_setup(trial.condition, new, trial)
-            self._setup = self._setup._replace(trial=trial, method=new)
-        elif kind == "gain":
-            self._tuned[text.partition(" ")[0]] = float(new.split()[0])
 
     def _begin(self, shared: Shared) -> None:
         """Open the streams of a trial that has just started."""
@@ -90,7 +76,11 @@ class Keeper:
             return
         try:
             paths = record_paths(next_free(self._record))
-            stream = RecordStream(paths, drive_metadata(self._setup, self._tuned))
+            described = drive_metadata(
+                chosen_setup(self._setup, self._chosen),
+                chosen_parameters(self._setup, self._chosen),
+            )
+            stream = RecordStream(paths, described)
         except (OSError, ValueError) as error:
             self._tell(f"the record cannot be written: {error}")
             return

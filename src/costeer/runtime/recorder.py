@@ -3,47 +3,46 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from costeer.base.packing import packed, unpack
+from costeer.base.described import described
 from costeer.loop.parameters import LoopParameters
 from costeer.loop.scenario import is_assisted
 from costeer.loop.trial import shipped_network, trial_metadata
-from costeer.methods.registry import AnyMethod
-from costeer.runtime.frame import ENDED, PLACE, RUNNING
-from costeer.runtime.setup import DriveSetup, drive_method, drive_parameters
+from costeer.runtime.frame import PLACE
+from costeer.runtime.markers import Marker
+from costeer.runtime.setup import DriveSetup, drive_parameters
 from costeer.runtime.shared import Shared
-from costeer.runtime.stream import Marker, RecordStream
-from costeer.runtime.tunables import place_of, tunable_named
+from costeer.runtime.states import RunState
+from costeer.runtime.stream import RecordStream
 
 INTERVAL = 0.25
 """Between two batches [s]: what a kill costs at most."""
 
 
 def drive_metadata(
-    setup: DriveSetup, tuned: Mapping[str, float] | None = None
+    setup: DriveSetup, parameters: LoopParameters[Any] | None = None
 ) -> dict[str, object]:
     """Description of a drive for its record; what no person has is null.
 
     Args:
         setup: Of the drive, with condition and method as they are now.
-        tuned: Values of tunables that were changed, by name.
+        parameters: As they are now; those of the setup if None.
     """
     network = shipped_network().hash if setup.intention == "network" else None
-    parameters = tuned_parameters(
-        drive_method(setup), drive_parameters(setup), tuned or {}
-    )
-    described = trial_metadata(setup.trial, parameters, network)
+    used = drive_parameters(setup) if parameters is None else parameters
+    known = {each.name: each.value for each in described(used)}
+    about = trial_metadata(setup.trial, used, network)
     if is_assisted(setup.trial):
-        duration = parameters.controller.trajectory.change_duration
-        described["change_duration"] = duration
+        for name, place in TUNED_BY_HAND.items():
+            about[name] = known.get(place, about[name])
     hands = "virtual hands" if setup.wheel is None else setup.wheel.name
     return {
-        **described,
+        **about,
         "participant": setup.participant,
         "driver": f"person, {hands}",
         "driver_torque_source": torque_source(setup),
@@ -52,14 +51,11 @@ def drive_metadata(
     }
 
 
-def tuned_parameters(
-    method: AnyMethod, parameters: LoopParameters[Any], tuned: Mapping[str, float]
-) -> LoopParameters[Any]:
-    """The parameters with tuned values in their places."""
-    values = packed(parameters)
-    for name, value in tuned.items():
-        values[place_of(method, tunable_named(method, name))] = value
-    return unpack(parameters, values)
+TUNED_BY_HAND = {
+    "strength_factor": "controller.actuation.strength_factor",
+    "change_duration": "controller.trajectory.change_duration",
+}
+"""What an experimenter may have changed of the condition, by its place."""
 
 
 def torque_source(setup: DriveSetup) -> str:
@@ -148,7 +144,7 @@ class Recorder:
     def _running(self, frames: NDArray[np.float64]) -> NDArray[np.float64]:
         """Frames of the running trial, each moment once, that of its end included."""
         time, state = frames[:, PLACE["time"]], frames[:, PLACE["run_state"]]
-        goes_on = (state == RUNNING) | (state == ENDED)
+        goes_on = (state == RunState.RUNNING) | (state == RunState.ENDED)
         taken = frames[goes_on & (time > self._last_time)]
         times = taken[:, PLACE["time"]]
         running: NDArray[np.float64] = taken[np.diff(times, prepend=-1.0) > 0.0]

@@ -2,20 +2,22 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from costeer.base.array import Real
 from costeer.devices.head.calibration import HeadCalibration
 from costeer.devices.wheels.calibration import WheelCalibration
 from costeer.devices.wheels.interface import WheelDescription
 from costeer.drivers.driver import DriverParameters
 from costeer.loop.parameters import DT, LoopParameters
 from costeer.loop.scenario import TrialSetup, loop_parameters, trial_method
-from costeer.methods.conditions import Condition, condition
-from costeer.methods.registry import METHODS, AnyMethod, method_named
+from costeer.methods.conditions import condition as condition_named
+from costeer.methods.ibhs import IBHS
+from costeer.methods.manual import MANUAL
+from costeer.methods.registry import AnyMethod, method_named
 
 PLANT_STEPS = 16
 """Plant steps in a control step with a person: 960 Hz."""
@@ -33,8 +35,7 @@ class DriveSetup(NamedTuple):
     """One drive; it can be sent to another process.
 
     Attributes:
-        trial: Condition, car, course and speed.
-        method: That assists where the condition does; in manual, none does.
+        trial: Condition, method, car, course and speed.
         wheel: The device; None for virtual hands (keyboard, gamepad).
         calibration: Of the device; None for virtual hands.
         intention: One of `INTENTION_SOURCES`.
@@ -45,7 +46,6 @@ class DriveSetup(NamedTuple):
     """
 
     trial: TrialSetup
-    method: str = "ibhs"
     wheel: WheelDescription | None = None
     calibration: WheelCalibration | None = None
     intention: str = "network"
@@ -62,6 +62,7 @@ def check_drive(setup: DriveSetup) -> None:
         ValueError: Naming the value and the way out.
     """
     loop_parameters(setup.trial)
+    offered_methods(setup)
     if setup.intention not in INTENTION_SOURCES:
         known = ", ".join(INTENTION_SOURCES)
         raise ValueError(
@@ -74,14 +75,32 @@ def check_drive(setup: DriveSetup) -> None:
         )
 
 
+@lru_cache(maxsize=64)
 def drive_parameters(setup: DriveSetup) -> LoopParameters[Any]:
     """Parameters of the loop: the trial's, with arms of average people.
 
     Raises:
         ValueError: If the trial cannot be run.
     """
-    trial = setup.trial._replace(plant_steps=PLANT_STEPS)
-    return loop_parameters(trial)._replace(driver=DriverParameters())
+    arms = DriverParameters()
+    return loop_parameters(setup.trial._replace(plant_steps=PLANT_STEPS, driver=arms))
+
+
+def offered_methods(setup: DriveSetup) -> dict[str, str]:
+    """Methods that an experimenter can choose from: name, and where each is.
+
+    The method of the drive, the paper's, and none.
+
+    Raises:
+        ValueError: If the drive's method is an object that no other process can find.
+    """
+    place = setup.trial.method
+    if not isinstance(place, str):
+        raise ValueError(
+            f"a drive runs in processes of its own; give method {place.name} by its "
+            "name, as module:object or as a file"
+        )
+    return {method_named(each).name: each for each in (place, IBHS.name, MANUAL.name)}
 
 
 def drive_method(setup: DriveSetup) -> AnyMethod:
@@ -89,28 +108,22 @@ def drive_method(setup: DriveSetup) -> AnyMethod:
     return trial_method(setup.trial)
 
 
-def trial_setup(name: str, method: str, changed: TrialSetup) -> TrialSetup:
-    """The trial under a condition and a method.
-
-    Args:
-        name: Of the condition.
-        method: Name of the method; manual is its own.
-        changed: Everything else.
+def under(setup: DriveSetup, condition: str, method: str) -> DriveSetup:
+    """The drive under another condition and one of the methods on offer.
 
     Raises:
-        ValueError: If condition or method is not known.
+        ValueError: If one of them is not known.
     """
-    chosen = condition(name)
-    method_named(method)
-    return changed._replace(
-        condition=chosen.name,
-        method="manual" if chosen.strength_factor == 0.0 else method,
+    places = offered_methods(setup)
+    if method not in places:
+        raise ValueError(
+            f"method '{method}' is not offered in this drive; choose one of "
+            f"{', '.join(places)}"
+        )
+    trial = setup.trial._replace(
+        condition=condition_named(condition).name, method=places[method]
     )
-
-
-def strength_of(chosen: Condition, method: str) -> Real:
-    """Strength factor of a condition; 0 with a method that does not assist [-]."""
-    return chosen.strength_factor if METHODS[method].assists else 0.0
+    return setup._replace(trial=trial)
 
 
 def leader_draws(setup: DriveSetup) -> NDArray[np.float64]:

@@ -23,9 +23,7 @@ from costeer.records.arrow import record_schema, to_table
 from costeer.records.columns import TrialRecord, validated
 from costeer.records.record import MARKERS_KEY, read_stream, stream_table, write_record
 from costeer.runtime.frame import TRACE_COLUMNS, TRACE_UNITS
-
-Marker = dict[str, object]
-"""What happened and when: `time`, `kind`, `text`."""
+from costeer.runtime.markers import Marker, as_json
 
 
 class RecordPaths(NamedTuple):
@@ -127,7 +125,8 @@ class RecordStream:
             markers: What happened since the last batch.
         """
         batch = self._batch(rows[:, : len(ROW_COLUMNS)], assisted)
-        beside = {MARKERS_KEY: json.dumps(markers)} if markers else None
+        told = json.dumps([as_json(marker) for marker in markers])
+        beside = {MARKERS_KEY: told} if markers else None
         self._writer.write_batch(batch, custom_metadata=beside)
         self._file.flush()
         self.num_rows += len(rows)

@@ -26,9 +26,10 @@ from costeer.loop.parameters import DT
 from costeer.loop.trial import shipped_network
 from costeer.plant.parameters import RoadParameters
 from costeer.plant.road import adjacent_side
-from costeer.runtime.frame import PLACE, RUNNING
+from costeer.runtime.frame import PLACE
 from costeer.runtime.patience import SERVER_PATIENCE
 from costeer.runtime.shared import close_shared, open_shared
+from costeer.runtime.states import RunState
 
 INTERVAL = 0.002
 """Between two looks at the ring [s]."""
@@ -102,7 +103,7 @@ def run_network(memory: str, road: RoadParameters, absent: tuple[str, ...]) -> N
         while time.perf_counter() - shared.mailbox.get("server_time") < SERVER_PATIENCE:
             next_frame, frames = shared.frames.since(next_frame)
             for frame in frames:
-                if frame[PLACE["run_state"]] == RUNNING:
+                if frame[PLACE["run_state"]] == RunState.RUNNING:
                     probability = reader.read(frame)
                     shared.mailbox.put(
                         crossing_probability=probability, verdict_row=next_frame

@@ -13,19 +13,28 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from costeer.base.packing import packed
-from costeer.methods.conditions import CONDITION_NAMES, condition
-from costeer.methods.registry import METHODS, method_named
+from costeer.methods.conditions import CONDITION_NAMES
 from costeer.plant.parameters import wheelbase
+from costeer.runtime.choices import (
+    checked_choice,
+    chosen_setup,
+    first_choice,
+    followed,
+    tuned_values,
+)
 from costeer.runtime.drive import Drive, Listener
 from costeer.runtime.frame import FRAME_COLUMNS, PLACE
+from costeer.runtime.markers import Marker
 from costeer.runtime.patience import PAGE_PATIENCE
-from costeer.runtime.setup import PLANT_DT, DriveSetup, drive_method, drive_parameters
-from costeer.runtime.stream import Marker
-from costeer.runtime.tunables import checked_value, place_of, tunable_named
+from costeer.runtime.setup import (
+    PLANT_DT,
+    DriveSetup,
+    drive_method,
+    drive_parameters,
+    offered_methods,
+)
+from costeer.runtime.states import page_tables
 from costeer.web.messages import (
-    ChooseCondition,
-    ChooseMethod,
     Indicator,
     Input,
     Latency,
@@ -36,6 +45,7 @@ from costeer.web.messages import (
     Set,
     Start,
     Stop,
+    marker_shown,
 )
 from costeer.web.session import Broadcast, Role
 
@@ -83,14 +93,7 @@ class DriveOnPages:
         self._late = Lateness()
         self._options = options
         self._num_drivers = 0
-        self._condition = setup.trial.condition
-        self._method = setup.method
-        values = packed(drive_parameters(setup))
-        self._loop_method = drive_method(setup)
-        self._values = {
-            t.name: float(values[place_of(self._loop_method, t)])
-            for t in self._loop_method.tunables
-        }
+        self._chosen = first_choice(setup)
         self.drive = Drive(setup, record, Listener(self._tell, self._mark))
 
     def also(
@@ -116,42 +119,39 @@ class DriveOnPages:
         """Pass a marker on, and what it changed."""
         for other in self._others:
             other.marker(marker)
-        kind, text = marker["kind"], str(marker["text"])
-        if kind == "error":  # something could not be done, and who drives must know
-            self.broadcast.send({"type": "error", "text": text})
+        if marker.kind == "error":  # it could not be done, and who drives must know
+            self.broadcast.send({"type": "error", "text": marker.note})
             return
-        self.broadcast.send({"type": "marker", **marker})
-        _, _, new = text.partition(" -> ")
-        if kind == "condition":
-            self._condition = new
-        elif kind == "method":
-            self._method = new
-        elif kind == "gain":
-            self._values[text.partition(" ")[0]] = float(new.split()[0])
-        else:
-            return
-        self.broadcast.send(self._state())
+        self.broadcast.send({"type": "marker", **marker_shown(marker)})
+        chosen = followed(self._chosen, marker)
+        if chosen is not self._chosen:
+            self._chosen = chosen
+            self.broadcast.send(self._state())
 
     def _state(self) -> dict[str, object]:
         """What an experimenter has chosen."""
         return {
             "type": "state",
-            "condition": self._condition,
-            "method": self._method,
+            "condition": self._chosen.condition,
+            "method": self._chosen.method,
             "tunables": self._tunables(),
         }
 
     def _tunables(self) -> list[dict[str, object]]:
+        """Tunables of the method that runs, and what they are."""
+        setup = self.drive.setup
+        values = tuned_values(setup, self._chosen)
+        method = drive_method(chosen_setup(setup, self._chosen))
         return [
             {
                 "name": each.name,
                 "unit": each.unit,
                 "low": each.low,
                 "high": each.high,
-                "value": self._values[each.name],
+                "value": values[each.name],
                 "label": each.label,
             }
-            for each in self._loop_method.tunables
+            for each in method.tunables
         ]
 
     def hello(self, role: Role) -> dict[str, object]:
@@ -169,13 +169,14 @@ class DriveOnPages:
                 "steering_ratio": car.steering_ratio,
             },
             "conditions": list(CONDITION_NAMES),
-            "condition": self._condition,
-            "methods": list(METHODS),
-            "method": self._method,
+            "condition": self._chosen.condition,
+            "methods": list(offered_methods(self.drive.setup)),
+            "method": self._chosen.method,
+            **page_tables(),
             "tunables": self._tunables() if role == "experimenter" else [],
             "input": self._options.input,
             "show_signals": self._options.show_signals or role == "experimenter",
-            "torque_limit": parameters.controller.actuation.torque_limit,
+            "torque_limit": parameters.column.torque_limit,
         }
 
     def apply(self, role: Role, message: Message) -> dict[str, object] | None:
@@ -192,7 +193,7 @@ class DriveOnPages:
         elif isinstance(message, Start | Resume | Restart):
             self.drive.send(type(message).__name__.lower())
         elif isinstance(message, Pause):
-            self.drive.send("pause", f"by the {role}")
+            self.drive.send("pause", role)
         elif isinstance(message, Indicator):
             self.drive.send("indicator", message.side)
         else:
@@ -206,16 +207,12 @@ class DriveOnPages:
             ValueError: If name or value cannot be.
         """
         if isinstance(message, Set):
-            value = checked_value(
-                tunable_named(self._loop_method, message.name), message.value
+            value = checked_choice(
+                self.drive.setup, self._chosen, message.name, message.value
             )
             self.drive.send("set", message.name, value)
-        elif isinstance(message, ChooseCondition):
-            self.drive.send("condition", condition(message.name).name)
-        elif isinstance(message, ChooseMethod):
-            self.drive.send("method", method_named(message.name).name)
         elif isinstance(message, Stop):
-            self.drive.send("pause", "stopped by the experimenter")
+            self.drive.send("pause", "stop")
             self.on_stop()
 
     def client_joined(self, role: Role) -> None:

@@ -11,6 +11,8 @@ import math
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
+from costeer.runtime.markers import Marker, as_json, told
+
 LARGEST_MESSAGE = 1024
 """Size of a message [bytes]."""
 
@@ -21,7 +23,7 @@ LARGEST_SEQUENCE = 2**53 - 1
 """The largest whole number that a page counts to without loss."""
 
 LONGEST_NAME = 64
-"""Letters in the name of a gain, condition or method."""
+"""Letters in the name of a parameter, condition or method."""
 
 
 class Input(NamedTuple):
@@ -71,22 +73,15 @@ class Latency(NamedTuple):
 
 
 class Set(NamedTuple):
-    """Tune a gain, by its name, in its unit."""
+    """Drive on with another condition, method or value of a parameter.
+
+    Attributes:
+        name: `condition`, `method`, or of a parameter.
+        value: A name for the first two, else a number in the parameter's unit.
+    """
 
     name: str
-    value: float
-
-
-class ChooseCondition(NamedTuple):
-    """Drive on under another condition."""
-
-    name: str
-
-
-class ChooseMethod(NamedTuple):
-    """Drive on with another method of guidance."""
-
-    name: str
+    value: float | str
 
 
 class Restart(NamedTuple):
@@ -98,21 +93,10 @@ class Stop(NamedTuple):
 
 
 Message = (
-    Input
-    | Ping
-    | Start
-    | Pause
-    | Resume
-    | Indicator
-    | Latency
-    | Set
-    | ChooseCondition
-    | ChooseMethod
-    | Restart
-    | Stop
+    Input | Ping | Start | Pause | Resume | Indicator | Latency | Set | Restart | Stop
 )
 
-EXPERIMENTER_ONLY = (Set, ChooseCondition, ChooseMethod, Restart, Stop)
+EXPERIMENTER_ONLY = (Set, Restart, Stop)
 """What only the experimenter may say."""
 
 # Any: a value out of JSON, and what became of it once it is checked.
@@ -183,6 +167,12 @@ _ANY = _between(-_LARGEST, _LARGEST)
 _SHARE = _between(0.0, 1.0)
 
 
+def _choice(name: str, value: object) -> float | str:
+    """A number or a name."""
+    choice: float | str = (_name if isinstance(value, str) else _ANY)(name, value)
+    return choice
+
+
 class _Kind(NamedTuple):
     """A type of message: what it becomes and how each field is checked."""
 
@@ -206,9 +196,7 @@ _KINDS: dict[str, _Kind] = {
     "resume": _Kind(Resume, {}),
     "indicator": _Kind(Indicator, {"side": _whole(-1, 1)}),
     "latency": _Kind(Latency, {"values": _latencies}),
-    "set": _Kind(Set, {"name": _name, "value": _ANY}),
-    "condition": _Kind(ChooseCondition, {"name": _name}),
-    "method": _Kind(ChooseMethod, {"name": _name}),
+    "set": _Kind(Set, {"name": _name, "value": _choice}),
     "restart": _Kind(Restart, {}),
     "stop": _Kind(Stop, {}),
 }
@@ -285,6 +273,11 @@ def _check_names(
     extra = [_shown(name) for name in given if name not in wanted]
     if extra:
         raise ValueError(f"the message has an unknown field {extra[0]}; leave it out")
+
+
+def marker_shown(marker: Marker) -> dict[str, object]:
+    """A marker as pages are sent it: its fields, and `text` for people."""
+    return {**as_json(marker), "text": told(marker)}
 
 
 def encoded(message: dict[str, object]) -> str:

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from costeer.export.markers import markers_of
 from costeer.plant.parameters import CARS, CarParameters, RoadParameters
 from costeer.records.columns import COLUMN_NAMES, MODES, TrialRecord, check_time
+from costeer.web.messages import marker_shown
 
 NEEDED = (
     "time",
@@ -113,7 +114,7 @@ def _described(record: TrialRecord, title: str) -> dict[str, object]:
         "mode": "replay",
         "title": title,
         "duration": float(time[-1] - time[0]),
-        "markers": [marker._asdict() for marker in markers_of(about)],
+        "markers": [marker_shown(marker) for marker in markers_of(about)],
         "rate": float(1.0 / np.median(np.diff(time))),
         "road": _road(about),
         "car": _car(about),

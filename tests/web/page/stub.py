@@ -24,6 +24,7 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
 from costeer.loop.rows import ROW_COLUMNS
+from costeer.runtime.states import page_tables
 
 STATIC = Path(__file__).parents[3] / "src" / "costeer" / "web" / "static"
 EXTRA = ("run_state", "fault", "input_sequence", "wheel_time", "sent_time", "indicator")
@@ -54,6 +55,7 @@ class Stub:
         self.role = "driver"
         self.show_signals = False
         self.mode = "drive"
+        self.tables: Json = dict(page_tables())
 
     def hello(self) -> Json:
         """First message of the server."""
@@ -74,7 +76,8 @@ class Stub:
             "input": "keyboard",
             "show_signals": self.show_signals,
             "title": "a drive straight on",
-            "markers": [{"time": 5.0, "kind": "started", "text": ""}],
+            "markers": [{"time": 5.0, "kind": "started", "text": "started"}],
+            **self.tables,
         }
 
     def record(self) -> np.ndarray:

@@ -11,12 +11,30 @@ import pytest
 from PIL import Image
 
 from tests.web.page.conftest import until, wait_for
-from tests.web.page.stub import Stub, served
+from tests.web.page.stub import Json, Stub, served
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page
 
 pytestmark = pytest.mark.browser
+
+
+LIMPING: Json = {
+    "code": 7,
+    "name": "limping",
+    "title": "On three wheels",
+    "lines": ["Press [Enter] to stop."],
+    "goes_on_by": "stop",
+}
+"""A state that no server has: the page knows states from the hello alone."""
+
+FLAT_TYRE: Json = {
+    "code": 77,
+    "name": "flat_tyre",
+    "text": "A tyre is flat.",
+    "can_resume": False,
+}
+"""The same of a fault."""
 
 
 class Driven:
@@ -40,7 +58,8 @@ class Driven:
 
     def enter(self, state: str) -> None:
         """Bring the trial into a state and wait until the page is there."""
-        number = ["waiting", "running", "paused", "ended"].index(state)
+        states = self.stub.tables["run_states"]
+        (number,) = [each["code"] for each in states if each["name"] == state]
         self.stub.frame |= {"run_state": float(number), "fault": 0.0}
         until(self.page, f"costeer.state === '{state}'")
 
@@ -48,6 +67,8 @@ class Driven:
 @pytest.fixture(scope="module")
 def driven(browser: Browser) -> Iterator[Driven]:
     stub = Stub()
+    stub.tables["run_states"].append(LIMPING)
+    stub.tables["faults"].append(FLAT_TYRE)
     with served(stub) as address:
         page = browser.new_page(viewport={"width": 480, "height": 270})
         found = Driven(page, stub, address)
@@ -110,10 +131,40 @@ def test_a_lost_wheel_is_named_and_space_goes_on(driven: Driven) -> None:
     driven.enter("running")
     driven.stub.frame |= {"run_state": 2.0, "fault": 1.0}
     until(driven.page, "costeer.state === 'paused'")
-    assert "The wheel was lost" in banner(driven.page)
+    assert "The steering wheel was lost" in banner(driven.page)
     driven.stub.frame["fault"] = 0.0
     driven.press("Space")
     until(driven.page, "costeer.state === 'running'")
+
+
+def test_every_fault_of_the_server_is_shown_with_what_can_be_done(
+    driven: Driven,
+) -> None:
+    driven.enter("paused")
+    faults = driven.stub.tables["faults"]
+    assert {"The page did not answer for a moment.", "A tyre is flat."} <= {
+        fault["text"] for fault in faults
+    }
+    warns = "document.getElementById('banner').classList.contains('warn')"
+    for fault in faults:
+        driven.stub.frame["fault"] = float(fault["code"])
+        until(driven.page, f"costeer.lastFrame.fault === {fault['code']}")
+        told = [line for line in banner(driven.page).split("\n") if line]
+        assert told[0] == "Paused"
+        assert (fault["text"] in told) == bool(fault["text"])
+        assert ("Press Enter or Space to go on." in told) == fault["can_resume"]
+        assert driven.page.evaluate(warns) == bool(fault["text"])
+
+
+def test_every_state_of_the_server_is_shown_and_left_as_it_says(
+    driven: Driven,
+) -> None:
+    for state in driven.stub.tables["run_states"]:
+        driven.enter(state["name"])
+        assert banner(driven.page).split("\n")[0] == state["title"]
+    driven.enter("limping")
+    driven.press("Enter")
+    wait_for(driven.page, lambda: bool(driven.stub.of_type("stop")))
 
 
 def test_the_same_indicator_twice_is_off(driven: Driven) -> None:

@@ -6,7 +6,7 @@ import { now } from "./clock.js";
 import { Controls, isTyping } from "./controls.js";
 import { byId } from "./elements.js";
 import { Columns } from "./frames.js";
-import { Hud, RUN_STATES, toggleFullScreen } from "./hud.js";
+import { Hud, LINK_STATES, toggleFullScreen } from "./hud.js";
 import { StateBuffer } from "./interpolation.js";
 import { FrameCounter, Latency } from "./latency.js";
 import { Panel } from "./panel.js";
@@ -19,6 +19,9 @@ const HEARTBEAT = 0.09;
 const PING_SPACING = 500;
 const SECOND = 1000;
 const INDICATOR_KEYS = { KeyZ: 1, Comma: 1, KeyX: -1, Period: -1 };
+
+/** Rows of a table of the server by their number in a frame. */
+const byCode = (rows) => new Map(rows.map((row) => [row.code, row]));
 
 export class Drive {
   /**
@@ -37,7 +40,6 @@ export class Drive {
     this.counters = options.counters ? byId("counters") : null;
     this.frames = 0;
     this.lastFrame = null;
-    this.state = "connecting";
     this.sentText = "";
     this.sentTime = 0;
     this.panel = null;
@@ -47,11 +49,11 @@ export class Drive {
       frames: (buffer, received) => this.receive(buffer, received),
       text: (message, received) => this.read(message, received),
       closed: (reason) => {
-        this.enter("lost");
+        this.enter(LINK_STATES.lost);
         if (reason) this.hud.note(reason);
       },
     });
-    this.enter("connecting");
+    this.enter(LINK_STATES.connecting);
     this.listen();
     requestAnimationFrame((time) => this.draw(time));
   }
@@ -60,6 +62,8 @@ export class Drive {
   greet(hello) {
     this.hello = hello;
     this.columns = new Columns(hello.columns);
+    this.runStates = byCode(hello.run_states);
+    this.faults = byCode(hello.faults);
     this.buffer = new StateBuffer(this.columns, hello.rate ?? 60);
     // A force-feedback wheel is a gamepad for the browser too; the server reads it better.
     this.controls.mayUseGamepad = hello.input !== "wheel";
@@ -68,7 +72,7 @@ export class Drive {
     this.strip.isShown = this.maySeeSignals && !this.isStripClosed;
     this.hud.describeKeys("drive", hello.role);
     if (this.link && hello.role === "experimenter") this.panel = new Panel(hello, this.link);
-    if (this.link) this.enter("waiting");
+    if (this.link) this.enter(hello.run_states[0]);
   }
 
   listen() {
@@ -105,8 +109,7 @@ export class Drive {
   }
 
   goOn() {
-    if (this.state === "waiting") this.link.send({ type: "start" });
-    if (this.state === "paused") this.link.send({ type: "resume" });
+    if (this.goesOnBy) this.link.send({ type: this.goesOnBy });
   }
 
   /** The same side again switches the indicator off. */
@@ -141,8 +144,8 @@ export class Drive {
       this.lastFrame = frame;
     }
     if (!this.lastFrame) return;
-    const name = RUN_STATES[this.columns.finite(this.lastFrame, "run_state")] ?? "running";
-    this.enter(name, this.columns.finite(this.lastFrame, "fault"));
+    const code = (name) => this.columns.finite(this.lastFrame, name);
+    this.enter(this.runStates.get(code("run_state")), this.faults.get(code("fault")));
   }
 
   /** Read a text message. */
@@ -151,12 +154,14 @@ export class Drive {
     else if (message.type === "state") this.panel?.state(message);
     else if (message.type === "error") this.hud.note(message.text, 6);
     else if (message.type === "marker" && this.hello.role === "experimenter") {
-      this.hud.note(message.text || message.kind);
+      this.hud.note(message.text);
     }
   }
 
-  enter(state, fault = 0) {
-    this.state = state;
+  /** Take on a state: of the trial, from the server's table, or of the link. */
+  enter(state, fault) {
+    this.state = state.name;
+    this.goesOnBy = state.goes_on_by;
     this.hud.state(state, fault);
   }
 

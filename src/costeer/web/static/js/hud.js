@@ -4,16 +4,13 @@
 
 import { byId, make } from "./elements.js";
 
-/** Names of `run_state` in a frame. */
-export const RUN_STATES = ["waiting", "running", "paused", "ended"];
-
-/** Why a trial paused, by `fault` in a frame. */
-const FAULTS = [
-  "", "The wheel was lost. Plug it in again.", "The page did not answer for a moment.",
-  "The wheel says nothing new. Check its cable.",
-  "A number was not finite. The trial must be restarted.",
-  "The computer was too busy for a moment; costeer doctor says how to mend it.",
-];
+/** What the page alone knows: how it stands with the server. */
+export const LINK_STATES = {
+  connecting: { name: "connecting", title: "Connecting …", lines: [] },
+  lost: {
+    name: "lost", title: "Connection lost", lines: ["The trial pauses. Trying again …"], warns: true,
+  },
+};
 
 /** Keys of driving and of replay, for the help. */
 const DRIVING_KEYS = [
@@ -76,21 +73,14 @@ export class Hud {
     this.banner.replaceChildren(make("h1", {}, title ?? ""), ...paragraphs);
   }
 
-  /** Show the message that belongs to a state of the trial. */
-  state(name, fault = 0) {
-    const reason = FAULTS[fault] ?? `Fault ${fault}.`;
-    if (name === "connecting") this.message("Connecting …");
-    else if (name === "lost") {
-      this.message("Connection lost", ["The trial pauses. Trying again …"], true);
-    } else if (name === "waiting") {
-      const lines = ["Press [Enter] or [Space] to start.", "[H] shows the keys."];
-      this.message("Ready", reason ? [reason, ...lines] : lines, Boolean(reason));
-    } else if (name === "paused") {
-      const lines = ["Press [Enter] or [Space] to go on."];
-      this.message("Paused", reason ? [reason, ...lines] : lines, Boolean(reason));
-    } else if (name === "ended") {
-      this.message("The drive is over", [reason || "Thank you."], Boolean(reason));
-    } else this.message("");
+  /**
+   * Show the message that belongs to a state of the trial or of the link.
+   * @param {{title: string, lines: string[], warns?: boolean}} state
+   * @param {{text: string, can_resume: boolean}} [fault] what is wrong, if anything is
+   */
+  state({ title, lines, warns = false }, fault) {
+    if (!title || !fault?.text) this.message(title, lines, warns);
+    else this.message(title, fault.can_resume ? [fault.text, ...lines] : [fault.text], true);
   }
 
   /** Show a line at the bottom for a few seconds. */

@@ -57,10 +57,10 @@ export class Panel {
     this.element = byId("panel");
     this.link = link;
     this.condition = choice("Condition", hello.conditions ?? [], hello.condition, (name) =>
-      link.send({ type: "condition", name }),
+      link.send({ type: "set", name: "condition", value: name }),
     );
     this.method = choice("Method", hello.methods ?? [], hello.method, (name) =>
-      link.send({ type: "method", name }),
+      link.send({ type: "set", name: "method", value: name }),
     );
     this.tunables = (hello.tunables ?? []).map((one) =>
       tunable(one, (name, value) => link.send({ type: "set", name, value })),

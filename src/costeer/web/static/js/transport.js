@@ -15,7 +15,7 @@ export class Transport {
   /**
    * @param {HTMLElement} parent
    * @param {import("./playback.js").Playback} playback
-   * @param {{title?: string, markers?: {time: number, kind: string, text: string}[]}} hello
+   * @param {{title?: string, markers?: {time: number, text: string}[]}} hello
    */
   constructor(parent, playback, hello) {
     this.playback = playback;
@@ -43,9 +43,9 @@ export class Transport {
 
   marks(markers) {
     const { start, end } = this.playback;
-    return markers.map(({ time, kind, text }) => {
+    return markers.map(({ time, text }) => {
       const mark = make("span", {
-        title: `${clockTime(time)} ${kind}${text ? `: ${text}` : ""}`,
+        title: `${clockTime(time)} ${text}`,
         onclick: () => this.playback.seek(time),
       });
       mark.style.left = `${(100 * (time - start)) / Math.max(end - start, 1e-9)}%`;

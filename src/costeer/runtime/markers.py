@@ -1,0 +1,91 @@
+"""What happened in a trial and what was changed in it, as one kind of record.
+
+Loop, server, pages, records and exports pass it on as it is and go by its fields.
+Words for people are made of it by `told` alone, and nothing reads them back.
+"""
+
+from __future__ import annotations
+
+from typing import Literal, NamedTuple
+
+from costeer.runtime.states import Fault
+
+Kind = Literal[
+    "started",
+    "resumed",
+    "paused",
+    "ended",
+    "restarted",
+    "condition",
+    "method",
+    "parameter",
+    "indicator",
+    "fault",
+    "error",
+    "note",
+]
+"""What can happen; `note` is what this version does not know."""
+
+Value = float | str | None
+
+
+class Marker(NamedTuple):
+    """Something that happened in a trial, or was changed in it.
+
+    Attributes:
+        kind: What sort of thing.
+        name: Which one, where the kind does not say it: the parameter, the fault, who
+            paused it or what ended it.
+        before: What a change replaced: a name or a number.
+        after: What holds since.
+        unit: Of the numbers; "-" if they have none.
+        time: Of the trial [s].
+        note: What only words can say: an error, what other programs wrote.
+    """
+
+    kind: Kind
+    name: str = ""
+    before: Value = None
+    after: Value = None
+    unit: str = ""
+    time: float = 0.0
+    note: str = ""
+
+
+_REASONS = {
+    "driver": "by the driver",
+    "experimenter": "by the experimenter",
+    "stop": "stopped by the experimenter",
+    "watchdog": "nobody watches the wheel any more",
+    "course": "the end of the course is reached",
+    "server": "the drive was stopped",
+}
+
+
+def told(marker: Marker) -> str:
+    """The marker in words, for people."""
+    what = marker.name if marker.kind == "parameter" else marker.kind
+    said = ", ".join(part for part in (_said(marker), marker.note) if part)
+    return f"{what}: {said}" if said else what
+
+
+def _said(marker: Marker) -> str:
+    """What fields say besides the kind."""
+    if marker.after is not None:
+        unit = "" if marker.unit in ("", "-") else f" {marker.unit}"
+        before = "" if marker.before is None else f"{_shown(marker.before)} → "
+        return f"{before}{_shown(marker.after)}{unit}"
+    if marker.kind == "fault":
+        texts = {fault.word: fault.text for fault in Fault}
+        return texts.get(marker.name, marker.name)
+    return _REASONS.get(marker.name, marker.name)
+
+
+def _shown(value: float | str) -> str:
+    return value if isinstance(value, str) else f"{value:.9g}"
+
+
+def as_json(marker: Marker) -> dict[str, object]:
+    """The marker as a JSON object of the fields that it has."""
+    fields = marker._asdict().items()
+    return {name: value for name, value in fields if value not in ("", None)}

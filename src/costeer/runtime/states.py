@@ -1,0 +1,113 @@
+"""Where a trial stands and what may be wrong: one table each, for loop and page.
+
+The number of a member stands in a frame; its name in records and messages. The page is
+sent both tables in its hello and has no list of its own.
+"""
+
+from __future__ import annotations
+
+from enum import IntEnum, unique
+from typing import Self
+
+
+class _Named(IntEnum):
+    """A member has a number for frames and a name for everyone else."""
+
+    @property
+    def word(self) -> str:
+        """Its name in records and messages: `wheel_lost`."""
+        return self.name.lower()
+
+
+@unique
+class RunState(_Named):
+    """Where a trial stands; a drive begins with the first.
+
+    Attributes:
+        title: What the page says in large letters; nothing while a person drives.
+        lines: What it says below, keys in brackets.
+        goes_on_by: Command by which the driver's key goes on from here; "" if none.
+    """
+
+    title: str
+    lines: tuple[str, ...]
+    goes_on_by: str
+
+    def __new__(
+        cls, number: int, title: str, lines: tuple[str, ...], goes_on_by: str
+    ) -> Self:
+        """A member with what the page says of it."""
+        state = int.__new__(cls, number)
+        state._value_ = number
+        state.title, state.lines, state.goes_on_by = title, lines, goes_on_by
+        return state
+
+    WAITING = (
+        0,
+        "Ready",
+        ("Press [Enter] or [Space] to start.", "[H] shows the keys."),
+        "start",
+    )
+    RUNNING = 1, "", (), ""
+    PAUSED = 2, "Paused", ("Press [Enter] or [Space] to go on.",), "resume"
+    ENDED = 3, "The drive is over", ("Thank you.",), ""
+
+
+@unique
+class Fault(_Named):
+    """What is wrong; each pauses a running trial at once and takes the torque off.
+
+    Attributes:
+        text: For people: what it is, and the way out.
+        can_resume: Whether the same trial can go on; else it must be begun anew.
+    """
+
+    text: str
+    can_resume: bool
+
+    def __new__(cls, number: int, text: str, can_resume: bool = True) -> Self:
+        """A member with its words and whether the trial can go on."""
+        fault = int.__new__(cls, number)
+        fault._value_ = number
+        fault.text, fault.can_resume = text, can_resume
+        return fault
+
+    NONE = 0, ""
+    WHEEL_LOST = 1, "The steering wheel was lost. Plug it in again."
+    PAGE_LOST = 2, "The page did not answer for a moment."
+    SENSOR_STALE = 3, "The steering wheel says nothing new. Check its cable."
+    NOT_FINITE = 4, "A number was not finite. The trial must be restarted.", False
+    STALLED = (
+        5,
+        "The computer was too busy for a moment; costeer doctor says how to mend it.",
+    )
+    LOOP_GONE = (
+        6,
+        "The real-time process has ended. Start costeer drive again.",
+        False,
+    )
+
+
+def page_tables() -> dict[str, object]:
+    """Both tables as pages are sent them."""
+    return {
+        "run_states": [
+            {
+                "code": int(each),
+                "name": each.word,
+                "title": each.title,
+                "lines": list(each.lines),
+                "goes_on_by": each.goes_on_by,
+            }
+            for each in RunState
+        ],
+        "faults": [
+            {
+                "code": int(each),
+                "name": each.word,
+                "text": each.text,
+                "can_resume": each.can_resume,
+            }
+            for each in Fault
+        ],
+    }
