@@ -163,7 +163,7 @@ def refuse_bad_plot(plot: Path | None) -> None:
 
 
 def _write_plot(plot: Path, svg: str) -> None:
-    from costeer.study.folder import write_text
+    from costeer.base.files import write_text
 
     plot.parent.mkdir(parents=True, exist_ok=True)
     write_text(plot, svg)

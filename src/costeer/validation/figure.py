@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from costeer.base.array import Real
-from costeer.study.figures.style import (
+from costeer.pages.style import (
     FULL_WIDTH_MM,
     INK,
     NORMAL,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from costeer.pages.exhibit import Exhibit
 from costeer.study.conditions import STRENGTHS
 from costeer.study.figures import (
     bars,
@@ -15,7 +16,6 @@ from costeer.study.figures import (
     workload,
 )
 from costeer.study.figures.episodes import exemplary_inconsistency
-from costeer.study.figures.exhibit import Exhibit
 from costeer.study.material import StudyMaterial, replan_gain
 from costeer.study.quantities import QUANTITIES, WORKLOAD
 

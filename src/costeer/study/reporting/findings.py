@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
+from costeer.pages.numerals import listed, number, signed
 from costeer.study.conditions import MANUAL
 from costeer.study.material import StudyMaterial, summary
 from costeer.study.outcome import PUBLISHED, WITHIN
@@ -20,7 +21,6 @@ from costeer.study.reporting.comparisons import (
     comparisons,
     shown_quantities,
 )
-from costeer.study.reporting.numerals import listed, number, signed
 
 _MOST_LISTED = 3
 _NUMBERS = ("no", "one", "two", "three", "four", "five", "six")

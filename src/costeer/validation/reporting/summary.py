@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from costeer.drivers.population import POPULATION_VERSION
-from costeer.study.reporting.numerals import listed, number, percent, plural
+from costeer.pages.numerals import listed, number, percent, plural
 from costeer.validation.arms import arms_in_range
 from costeer.validation.departures import Departures, summarise
 from costeer.validation.manual import (

@@ -5,8 +5,8 @@ from __future__ import annotations
 import textwrap
 from collections.abc import Sequence
 
-from costeer.study.reporting.numerals import NOTHING, interval, number
-from costeer.study.reporting.tables import Table
+from costeer.pages.numerals import NOTHING, interval, number
+from costeer.pages.tables import Table
 from costeer.validation.manual import Comparison
 from costeer.validation.overview import Quantity
 from costeer.validation.reporting.verdicts import target_reason, target_verdict
