@@ -26,8 +26,7 @@ from matplotlib.ticker import FormatStrFormatter
 
 from benchmarks.hands_off import hands_off_setup
 from costeer.loop.scenario import loop_parameters
-from costeer.plant.parameters import CARS
-from costeer.study.figures.style import (
+from costeer.pages.style import (
     FULL_WIDTH_MM,
     INK,
     RULE,
@@ -38,6 +37,7 @@ from costeer.study.figures.style import (
     styled,
     svg_text,
 )
+from costeer.plant.parameters import CARS
 from costeer.validation.linear import (
     LinearLoop,
     damping_ratio,

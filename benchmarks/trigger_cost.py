@@ -27,9 +27,9 @@ from costeer.base.array import Real
 from costeer.loop.scenario import TrialSetup
 from costeer.loop.trial import simulate_trial
 from costeer.methods.conditions import CONDITION_NAMES, MANUAL, condition
+from costeer.pages.numerals import NOTHING, number
 from costeer.study.definitions import DEFAULTS
 from costeer.study.detection import FALSE
-from costeer.study.reporting.numerals import NOTHING, number
 from costeer.study.trial_measures import Trial, prepare
 from costeer.study.trigger_costs import COST_COLUMNS, costs, trigger_costs
 from costeer.study.trigger_episodes import MISSED, Episode, episodes

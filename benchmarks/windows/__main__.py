@@ -34,7 +34,11 @@ from costeer.intention.features import FEATURES, SAMPLE_RATE
 from costeer.intention.gru import NetworkWeights, hidden_size
 from costeer.intention.weights import load_weights
 from costeer.loop.scenario import TrialSetup
-from costeer.training.simulation import simulate_setups, simulate_unseen
+from costeer.training.simulation import (
+    FIRST_UNSEEN,
+    simulate_recordings,
+    simulate_setups,
+)
 
 SIZES = (8, 16, 24, 32, 64)
 BLOCK = 40
@@ -68,7 +72,7 @@ def blocks(options: argparse.Namespace) -> Iterator[list[Floats]]:
             setups = [assisted_setup(start + i, seed) for i in range(wanted)]
             own = simulate_setups(setups, options.jobs)
         else:
-            own = simulate_unseen(wanted, seed, options.jobs)
+            own = simulate_recordings(wanted, seed, options.jobs, None, FIRST_UNSEEN)
         yield [recording.features for recording in own]
 
 
@@ -198,7 +202,8 @@ def main() -> None:
     )
     if not options.cost_only:
         run(options, network.weights)
-    features = simulate_unseen(1, options.seed)[0].features
+    (own, *_) = simulate_recordings(1, options.seed, first=FIRST_UNSEEN)
+    features = own.features
     cost_table(network.weights, options.gates[-1], features)
 
 

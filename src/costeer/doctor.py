@@ -22,25 +22,16 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
+from costeer.base.extras import LIBRARIES, install_command
+from costeer.study.jobs import usable_cores
+
 OLDEST_PYTHON = (3, 11)
 STUDY_MEMORY = 2.0e9
 """Memory that a study may use at most [B]."""
 STUDY_DISK = 1.0e9
 """Room for the records of a study and its report [B], with some to spare."""
 
-_EXTRAS = {
-    "jax": ("jax", "gradients and GPUs"),
-    "optax": ("train", "training the intention network"),
-    "onnxruntime": ("drive", "following the head with a webcam"),
-    "opencv-python-headless": ("drive", "following the head with a webcam"),
-    "pysdl2": ("drive", "steering wheels"),
-    "hidapi": ("drive", "Logitech wheels without a driver"),
-    "mcap": ("drive", "export to MCAP"),
-    "python-can": ("can", "a SENSO-Wheel"),
-    "pylsl": ("lsl", "head trackers and recorders over Lab Streaming Layer"),
-    "highway-env": ("bench", "a peer in the benchmark"),
-    "commonroad-vehicle-models": ("bench", "a peer in the benchmark"),
-}
+_EXTRAS = {each.package: each for each in LIBRARIES if each.purpose}
 _SIMD = ("avx512f", "avx2", "avx", "sse4.2", "neon", "sve")
 
 
@@ -89,13 +80,6 @@ def check_python() -> Finding:
 def check_cores() -> Finding:
     """Cores that this process may use."""
     return Finding("Cores", "ok", f"{usable_cores()} of {os.cpu_count() or 1}")
-
-
-def usable_cores() -> int:
-    """Number of cores that this process may use."""
-    if hasattr(os, "sched_getaffinity"):
-        return len(os.sched_getaffinity(0))
-    return os.cpu_count() or 1
 
 
 def check_memory() -> Finding:
@@ -257,8 +241,8 @@ def check_wheels() -> Finding:
     try:
         found = found_wheels()
     except (ModuleNotFoundError, OSError) as error:
-        remedy = "run: pip install 'costeer[drive]'"
-        return Finding("Steering wheel", "optional", str(error), remedy)
+        way_out = f"run: {install_command('drive')}"
+        return Finding("Steering wheel", "optional", str(error), way_out)
     if not found:
         detail = "none is plugged in; the keyboard steers"
         return Finding("Steering wheel", "optional", detail)
@@ -308,9 +292,9 @@ def check_page() -> Finding:
 
 def check_extra(package: str) -> Finding:
     """A package that an extra brings is there."""
-    extra, purpose = _EXTRAS[package]
+    library = _EXTRAS[package]
     found = installed_version(package)
     if found is not None:
-        return Finding(package, "ok", f"{found}, for {purpose}")
-    remedy = f"pip install 'costeer[{extra}]'"
-    return Finding(package, "optional", f"not installed, for {purpose}", remedy)
+        return Finding(package, "ok", f"{found}, for {library.purpose}")
+    told = f"not installed, for {library.purpose}"
+    return Finding(package, "optional", told, install_command(library.extra))

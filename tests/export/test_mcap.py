@@ -14,7 +14,6 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from mcap.reader import make_reader
 
-from costeer.export import mcap as exporter
 from costeer.export.mcap import write_mcap
 from costeer.records.record import COLUMNS, TrialRecord
 from tests.study.synthetic import synthetic_record
@@ -181,18 +180,3 @@ def test_what_the_format_cannot_hold_is_refused(
     with pytest.raises(ValueError, match=told):
         write_mcap(TrialRecord({}, columns), tmp_path / "t.mcap")
     assert list(tmp_path.iterdir()) == []
-
-
-def test_a_failure_leaves_the_old_file_and_nothing_else(
-    record: TrialRecord, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    path = tmp_path / "t.mcap"
-    path.write_bytes(b"old")
-
-    def fail(*_: object) -> None:
-        raise OSError(28, "No space left on device")
-
-    monkeypatch.setattr(exporter, "_write_markers", fail)
-    with pytest.raises(OSError, match="No space"):
-        write_mcap(record, path)
-    assert [each.read_bytes() for each in tmp_path.iterdir()] == [b"old"]

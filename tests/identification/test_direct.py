@@ -18,8 +18,8 @@ from costeer.identification.direct import (
     planned_duration,
     preferred_speed,
 )
-from costeer.identification.drive import Drive
 from costeer.identification.recording import drive_of
+from costeer.identification.signals import Drive
 from costeer.identification.stretches import changes, step_response
 from tests.identification.driving import recorded
 

@@ -9,12 +9,6 @@ from costeer.drivers import arm, tracking, vision
 from costeer.drivers.arm import ArmCommand, ArmState
 from costeer.drivers.driver import DriverParameters
 from costeer.drivers.vision import VisionNoise
-from costeer.identification.drive import (
-    PLANT_STEPS,
-    Drive,
-    angles_between,
-    sliding_share,
-)
 from costeer.identification.kernel import (
     MOTOR_NOISE,
     NEAR_NOISE,
@@ -27,6 +21,12 @@ from costeer.identification.model import (
     filter_parameters,
     start,
     wheel_motion,
+)
+from costeer.identification.signals import (
+    PLANT_STEPS,
+    Drive,
+    angles_between,
+    sliding_share,
 )
 from costeer.plant.parameters import CARS, ColumnParameters, holding_stiffness
 from costeer.plant.steering import steering_wheel_rate

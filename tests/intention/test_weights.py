@@ -102,8 +102,8 @@ def test_another_numpy_file_is_refused(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("name", "value", "said"),
     [
-        ("output_bias", np.array(["x"]), "output_bias of .* holds <U1, expected float"),
-        ("output_bias", np.array([1j]), "holds complex128, expected floats"),
+        ("output_bias", np.array(["x"]), "output_bias of .* holds <U1, expected"),
+        ("output_bias", np.array([1j]), "holds complex128, expected"),
         ("header", np.frombuffer(b"[1]", np.uint8), "not a file of intention weights"),
     ],
 )
@@ -160,22 +160,3 @@ def test_another_version_or_other_signals_are_refused(
     np.savez(file, **arrays)
     with pytest.raises(ValueError, match="costeer train"):
         load_weights(file)
-
-
-def test_an_interrupted_write_leaves_the_old_file(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    file = tmp_path / "weights.npz"
-    save_weights(file, network(seed=1))
-
-    def full_disk(path: Path, content: bytes) -> int:
-        with path.open("wb") as part:
-            part.write(content[:10])
-        raise OSError("No space left on device")
-
-    monkeypatch.setattr(Path, "write_bytes", full_disk)
-    with pytest.raises(OSError, match="No space"):
-        save_weights(file, network(seed=2))
-    monkeypatch.undo()
-    assert load_weights(file).facts == {"seed": 1}
-    assert list(tmp_path.iterdir()) == [file]

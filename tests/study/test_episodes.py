@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from costeer.controller.strength import StrengthParameters, initial_state, step
+from costeer.pages.style import styled
 from costeer.records.record import TrialRecord, read_record, write_record
 from costeer.study.figures import gain, inconsistency
 from costeer.study.figures.episodes import (
@@ -17,7 +18,6 @@ from costeer.study.figures.episodes import (
     inconsistent_spans,
     rises,
 )
-from costeer.study.figures.style import styled
 from costeer.study.material import StudyMaterial, replan_gain
 
 REPLAN_GAIN = 0.05

@@ -15,18 +15,18 @@ from matplotlib.text import Text
 from matplotlib.ticker import FixedFormatter, FuncFormatter
 
 from costeer.methods.conditions import CONDITION_NAMES
-from costeer.study.figures import bars, detection, signals, trajectories, workload
-from costeer.study.figures.catalogue import FIGURE_NAMES, draw_figures
-from costeer.study.figures.exhibit import Exhibit
-from costeer.study.figures.style import (
+from costeer.pages.exhibit import Exhibit
+from costeer.pages.style import (
     COLUMN_WIDTH_MM,
     FULL_WIDTH_MM,
     MM_PER_INCH,
     SMALL,
-    condition_colour,
     styled,
     svg_text,
 )
+from costeer.study.figures import bars, detection, signals, trajectories, workload
+from costeer.study.figures.catalogue import FIGURE_NAMES, draw_figures
+from costeer.study.figures.colours import condition_colour
 from costeer.study.material import HUMAN_DRIVER, StudyMaterial
 from costeer.study.quantities import QUANTITIES, WORKLOAD
 

@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pandas as pd
 
+from costeer.pages.style import styled
+from costeer.pages.tables import MOST_ROWS, Table, shortened
 from costeer.study.figures import bars
-from costeer.study.figures.style import styled
 from costeer.study.material import StudyMaterial
 from costeer.study.quantities import QUANTITIES
-from costeer.study.reporting.tables import MOST_ROWS, Table, shortened
 
 
 def test_a_long_table_is_cut_and_says_so() -> None:

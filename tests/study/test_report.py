@@ -11,11 +11,11 @@ from pathlib import Path
 
 import pytest
 
+from costeer.pages.numerals import number, signed
 from costeer.study.figures.catalogue import FIGURE_NAMES
 from costeer.study.material import StudyMaterial
 from costeer.study.quantities import BY_STRENGTH, QUANTITIES, WORKLOAD, Quantity
 from costeer.study.report import NUM_STEPS, write_report
-from costeer.study.reporting.numerals import number, signed
 from tests.study.fakes import contents
 
 TABLES = ("tests.csv", "pairs.csv", "summaries.csv", "dropped.csv")

@@ -7,7 +7,7 @@ from scipy import stats
 
 from costeer.study.anova import FTest, no_f_test
 from costeer.study.effects import EffectSize, partial_eta_squared
-from costeer.study.rows import About, Comparison, effect_row, joined, pair_rows
+from costeer.study.rows import About, PairTest, effect_row, joined, pair_rows
 from costeer.study.ttests import TTest
 
 ABOUT = About("overshoot", "within", 12, "left out: 3 (no manual)")
@@ -44,7 +44,7 @@ def test_pair_is_marked_by_the_p_value_after_the_correction() -> None:
     ]
     names = ("strong", "weak", "gentle")
     pairs = [
-        Comparison(name, "manual", test, 12, 12)
+        PairTest(name, "manual", test, 12, 12)
         for name, test in zip(names, tests, strict=True)
     ]
     rows = pair_rows("overshoot", "within", pairs)

@@ -9,10 +9,10 @@ from pathlib import Path
 import pandas as pd
 
 from costeer.methods.conditions import CONDITION_NAMES
+from costeer.pages.tables import Table
 from costeer.study.material import StudyMaterial, read_material
 from costeer.study.reporting.event_tables import detection_table
 from costeer.study.reporting.sections import page_sections
-from costeer.study.reporting.tables import Table
 from costeer.study.reporting.trigger_tables import (
     counted_once,
     rate_text,

@@ -11,8 +11,8 @@ from costeer.validation import manual
 from costeer.validation.manual import (
     PLANNED_CHANGES,
     TARGETS,
-    Comparison,
     ManualDriving,
+    TargetCheck,
     compare,
     drive_population,
     missed_by,
@@ -95,9 +95,9 @@ def test_a_trial_that_fails_is_told_as_it_is(monkeypatch: pytest.MonkeyPatch) ->
 
 def test_a_miss_is_the_distance_to_the_range() -> None:
     target = TARGETS[0]
-    assert missed_by(Comparison(target, 0.20, True)) == 0.0
-    assert missed_by(Comparison(target, 0.28, False)) == pytest.approx(0.03)
-    assert missed_by(Comparison(target, 0.10, False)) == pytest.approx(0.05)
+    assert missed_by(TargetCheck(target, 0.20, True)) == 0.0
+    assert missed_by(TargetCheck(target, 0.28, False)) == pytest.approx(0.03)
+    assert missed_by(TargetCheck(target, 0.10, False)) == pytest.approx(0.05)
 
 
 def test_nobody_gives_no_value_and_meets_nothing() -> None:

@@ -11,7 +11,8 @@ import math
 import re
 from collections.abc import Iterable, Mapping
 from functools import cache
-from typing import Any, NamedTuple, TypeVar
+from operator import attrgetter
+from typing import Any, NamedTuple, TypeVar, cast
 
 from costeer.base.array import Real
 
@@ -134,7 +135,7 @@ def with_values(record: Record, values: Mapping[str, Real]) -> Record:
     for name, value in values.items():
         if name not in known:
             raise ValueError(f"there is no parameter '{name}'{nearest(name, known)}")
-        record = _with_value(record, name.split("."), checked_value(known[name], value))
+        record = with_value_at(record, name, checked_value(known[name], value))
     return record
 
 
@@ -156,7 +157,14 @@ def checked_value(parameter: Described, value: Real) -> Real | bool:
     return type(parameter.value)(value)
 
 
-def _with_value(record: Any, path: list[str], value: Real | bool) -> Any:
-    name, *rest = path
-    new = _with_value(getattr(record, name), rest, value) if rest else value
-    return record._replace(**{name: new})
+def value_at(record: Any, place: str) -> Any:
+    """The number at a dotted place of a nested named tuple."""
+    return attrgetter(place)(record)
+
+
+def with_value_at(record: Record, place: str, value: Real | bool) -> Record:
+    """The record with another number at a dotted place, unchecked."""
+    name, _, rest = place.partition(".")
+    given: Any = record  # Any: a type variable has no fields
+    new = with_value_at(getattr(record, name), rest, value) if rest else value
+    return cast("Record", given._replace(**{name: new}))

@@ -59,7 +59,7 @@ def _draw(plot: Path, fit: DriverFit, record: TrialRecord) -> None:
     """Draw the fit on the population at the speed that was suggested, if recorded."""
     import numpy as np
 
-    from costeer.study.folder import write_text
+    from costeer.base.files import write_text
     from costeer.validation.fitted_figure import fit_svg
 
     plot.parent.mkdir(parents=True, exist_ok=True)

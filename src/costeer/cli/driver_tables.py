@@ -13,7 +13,7 @@ import typer
 from costeer.cli.console import note, print_table, progress
 
 if TYPE_CHECKING:
-    from costeer.validation.manual import Comparison, ManualDriving
+    from costeer.validation.manual import ManualDriving, TargetCheck
     from costeer.validation.overview import Quantity
 
 
@@ -163,14 +163,14 @@ def refuse_bad_plot(plot: Path | None) -> None:
 
 
 def _write_plot(plot: Path, svg: str) -> None:
-    from costeer.study.folder import write_text
+    from costeer.base.files import write_text
 
     plot.parent.mkdir(parents=True, exist_ok=True)
     write_text(plot, svg)
     note(f"wrote {plot}")
 
 
-def _print_targets(seed: int, count: int, comparisons: list[Comparison]) -> None:
+def _print_targets(seed: int, count: int, comparisons: list[TargetCheck]) -> None:
     from costeer.validation.manual import missed_by
 
     rows = [
@@ -200,7 +200,7 @@ def _short(value: float) -> str:
 def _driving_as_json(
     seed: int,
     driving: ManualDriving,
-    comparisons: list[Comparison],
+    comparisons: list[TargetCheck],
     quantities: list[Quantity],
 ) -> dict[str, object]:
     from costeer.drivers.population import POPULATION_VERSION

@@ -11,27 +11,12 @@ from typing import Any
 
 import typer
 
+from costeer.base.extras import LIBRARIES, install_command
+
 BAD_INPUT = 2
 INTERRUPTED = 130
 
-_EXTRAS = {
-    "jax": "jax",
-    "optax": "train",
-    "highway_env": "bench",
-    "gymnasium": "bench",
-    "vehiclemodels": "bench",
-    "onnx": "dev",
-    "onnxruntime": "drive",
-    "cv2": "drive",
-    "google": "drive",
-    "google.protobuf": "drive",
-    "hid": "drive",
-    "mcap": "drive",
-    "playwright": "dev",
-    "sdl2": "drive",
-    "can": "can",
-    "pylsl": "lsl",
-}
+_EXTRAS = {name: library.extra for library in LIBRARIES for name in library.modules}
 """Extra of costeer that brings each module which a plain install lacks."""
 
 
@@ -103,8 +88,7 @@ _WANTED = {
 
 def _missing_module(name: str) -> str:
     """Say which extra brings a module."""
-    extra = _EXTRAS[name]
-    return f"{name} is not installed; install it with: pip install 'costeer[{extra}]'"
+    return f"{name} is not installed; install it with: {install_command(_EXTRAS[name])}"
 
 
 def _system_error(error: OSError) -> str:

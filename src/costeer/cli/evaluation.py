@@ -130,12 +130,14 @@ def read_source(source: Source) -> list[Recording]:
         OSError: If a file cannot be read.
     """
     if source.simulate is not None:
-        from costeer.training.simulation import simulate_unseen
+        from costeer.training.simulation import FIRST_UNSEEN, simulate_recordings
 
         jobs = os.cpu_count() or 1
         seed = 1 if source.seed is None else source.seed
         with progress("simulated drivers", source.simulate) as advance:
-            return simulate_unseen(source.simulate, seed, jobs, advance)
+            return simulate_recordings(
+                source.simulate, seed, jobs, advance, FIRST_UNSEEN
+            )
     if source.dataset is not None:
         from costeer.training.datasets.catalogue import read_dataset
 

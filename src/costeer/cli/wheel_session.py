@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from costeer.devices.wheels.calibration import WheelCalibration
     from costeer.devices.wheels.interface import Wheel, WheelDescription
     from costeer.devices.wheels.pedals import ShowsAxes
-    from costeer.devices.wheels.selftest import Comparison, Procedure, Reference
+    from costeer.devices.wheels.selftest import Procedure, Reference, StoredAndFound
 
 Result = TypeVar("Result")
 
@@ -216,7 +216,7 @@ def check(chosen: Chosen) -> None:
         )
 
 
-def _row(comparison: Comparison, remark: str) -> tuple[str, ...]:
+def _row(comparison: StoredAndFound, remark: str) -> tuple[str, ...]:
     numbers = (comparison.stored, comparison.found, comparison.allowed)
     shown = [f"{number:.3g}" for number in numbers]
     return (comparison.name, *shown, comparison.unit, remark)

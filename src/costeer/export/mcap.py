@@ -17,6 +17,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from costeer.base.files import replacing
 from costeer.export.markers import markers_of
 from costeer.records.columns import COLUMNS_BY_NAME, TrialRecord, check_time
 from costeer.runtime.markers import Marker, Value, told
@@ -65,15 +66,8 @@ def write_mcap(record: TrialRecord, path: str | os.PathLike[str]) -> None:
         ModuleNotFoundError: If `mcap` or `protobuf` is not installed.
     """
     _check(record)
-    file = Path(path)
-    partial = file.with_name(file.name + ".tmp")
-    try:
-        with partial.open("wb") as stream:
-            _write(stream, record)
-        partial.replace(file)
-    except BaseException:
-        partial.unlink(missing_ok=True)
-        raise
+    with replacing(Path(path)) as partial, partial.open("wb") as stream:
+        _write(stream, record)
 
 
 def _check(record: TrialRecord) -> None:

@@ -14,8 +14,8 @@ from scipy.stats import beta, chi2, t
 
 from costeer.drivers.gaze import GazeParameters
 from costeer.drivers.longitudinal import LongitudinalParameters
-from costeer.identification.drive import Drive, Signal
 from costeer.identification.parameters import Estimate
+from costeer.identification.signals import Drive, Signal
 from costeer.identification.stretches import (
     Change,
     apart_from,

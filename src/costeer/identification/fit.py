@@ -9,7 +9,6 @@ import numpy as np
 
 from costeer.drivers.driver import DriverParameters
 from costeer.identification.direct import direct_estimates
-from costeer.identification.drive import Drive
 from costeer.identification.likelihood import Evidence, predicted
 from costeer.identification.model import wheel_motion
 from costeer.identification.parameters import (
@@ -19,6 +18,7 @@ from costeer.identification.parameters import (
     with_value,
 )
 from costeer.identification.recording import drive_of
+from costeer.identification.signals import Drive
 from costeer.identification.steering import fit_steering
 from costeer.identification.stretches import (
     MARGIN_BEFORE,

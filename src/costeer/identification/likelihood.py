@@ -18,7 +18,6 @@ import numpy as np
 from costeer.base.filters import decay
 from costeer.drivers.arm import ArmParameters
 from costeer.drivers.driver import DriverParameters
-from costeer.identification.drive import PLANT_STEPS, Drive, Signal, WheelMotion
 from costeer.identification.kernel import innovations_compiled
 from costeer.identification.model import (
     filter_inputs,
@@ -27,6 +26,7 @@ from costeer.identification.model import (
     reflex_angle,
     start,
 )
+from costeer.identification.signals import PLANT_STEPS, Drive, Signal, WheelMotion
 from costeer.plant.parameters import ColumnParameters
 from costeer.plant.steering import steering_wheel_rate
 

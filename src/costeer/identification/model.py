@@ -10,14 +10,6 @@ from costeer.base.filters import decay
 from costeer.drivers.arm import ArmParameters
 from costeer.drivers.driver import DriverParameters
 from costeer.drivers.vision import VisionParameters
-from costeer.identification.drive import (
-    PLANT_STEPS,
-    Drive,
-    Signal,
-    WheelMotion,
-    angles_between,
-    sliding_share,
-)
 from costeer.identification.kernel import (
     NUM_NOISES,
     NUM_STATES,
@@ -25,6 +17,14 @@ from costeer.identification.kernel import (
     FilterParameters,
     fill_vision_and_arm,
     fill_wander_and_noise,
+)
+from costeer.identification.signals import (
+    PLANT_STEPS,
+    Drive,
+    Signal,
+    WheelMotion,
+    angles_between,
+    sliding_share,
 )
 from costeer.plant.parameters import holding_stiffness
 

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from costeer.identification.drive import Drive, Signal
+from costeer.identification.signals import Drive, Signal
 from costeer.loop.parameters import DT
 from costeer.plant.parameters import CARS, ColumnParameters, RoadParameters
 from costeer.plant.road import lane_at, lane_centre

@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from costeer.identification.drive import Drive, Signal
+from costeer.identification.signals import Drive, Signal
 
 YAW_THRESHOLD = 0.00873
 """A lane change starts and ends at this yaw towards the new lane, 0.5 deg [rad]."""

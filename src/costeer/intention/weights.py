@@ -7,11 +7,6 @@ training. The same network gives the same bytes.
 
 from __future__ import annotations
 
-import hashlib
-import io
-import json
-import os
-import zipfile
 from importlib import resources
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -19,17 +14,26 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from costeer.intention.arrays import (
+    Form,
+    arrays_hash,
+    check_array,
+    read_arrays,
+    write_arrays,
+)
 from costeer.intention.features import (
-    FEATURES,
     INPUTS,
     NUM_FEATURES,
     NUM_INPUTS,
     NUM_SCALED,
-    WINDOW_LENGTH,
 )
 from costeer.intention.gru import NetworkWeights
 
-FORMAT_VERSION = 2
+FORM = Form(
+    version=2,
+    kind="intention weights (.npz of `costeer train`)",
+    remedy="train again with `costeer train`",
+)
 _DOUBLE = ("feature_mean", "feature_scale", "dispensable")
 _SHIPPED = "ibhs.npz"
 
@@ -50,11 +54,7 @@ class IntentionNetwork(NamedTuple):
 
 def weights_hash(weights: NetworkWeights) -> str:
     """SHA-256 over names, shapes and little-endian bytes of all arrays."""
-    digest = hashlib.sha256()
-    for name, values in _stored(weights).items():
-        digest.update(f"{name}{values.shape}{values.dtype.str}".encode())
-        digest.update(values.tobytes())
-    return digest.hexdigest()
+    return arrays_hash(_stored(weights))
 
 
 def intention_network(
@@ -72,25 +72,14 @@ def intention_network(
 
 def save_weights(path: Path, network: IntentionNetwork) -> None:
     """Write the file in one piece: it is there whole or not at all."""
-    header = {
-        "version": FORMAT_VERSION,
-        "features": list(FEATURES),
-        "inputs": list(INPUTS),
-        "window_length": WINDOW_LENGTH,
-        "hash": network.hash,
-        "facts": network.facts,
-    }
-    text = json.dumps(header, sort_keys=True, indent=1).encode()
-    buffer = io.BytesIO()
-    arrays: dict[str, Any] = {"header": np.frombuffer(text, np.uint8)}
-    arrays |= _stored(network.weights)
-    np.savez(buffer, **arrays)
-    partial = path.with_name(f".{path.name}.{os.getpid()}")
-    try:
-        partial.write_bytes(buffer.getvalue())
-        partial.replace(path)
-    finally:
-        partial.unlink(missing_ok=True)
+    write_arrays(
+        path,
+        FORM,
+        _stored(network.weights),
+        inputs=list(INPUTS),
+        hash=network.hash,
+        facts=network.facts,
+    )
 
 
 def load_weights(path: Path | None = None) -> IntentionNetwork:
@@ -116,17 +105,7 @@ def _stored(weights: NetworkWeights) -> dict[str, NDArray[Any]]:
 
 
 def _parsed(content: bytes, source: str) -> IntentionNetwork:
-    header, arrays = _unpacked(content, source)
-    if header.get("version") != FORMAT_VERSION:
-        raise ValueError(
-            f"{source} has format version {header.get('version')}, this costeer reads "
-            f"version {FORMAT_VERSION}: train again with `costeer train`"
-        )
-    if header.get("features") != list(FEATURES):
-        raise ValueError(
-            f"{source} is for the signals {header.get('features')}, not "
-            f"{list(FEATURES)}: train again with `costeer train`"
-        )
+    header, arrays = read_arrays(content, FORM, source)
     missing = [name for name in NetworkWeights._fields if name not in arrays]
     if missing:
         raise ValueError(f"{source} lacks the arrays {', '.join(missing)}")
@@ -136,27 +115,6 @@ def _parsed(content: bytes, source: str) -> IntentionNetwork:
     if network.hash != header.get("hash"):
         raise ValueError(f"{source} was altered: its hash does not fit its weights")
     return network
-
-
-def _unpacked(content: bytes, source: str) -> tuple[dict[str, Any], dict[str, Any]]:
-    """Header and arrays of the file."""
-    try:
-        with np.load(io.BytesIO(content), allow_pickle=False) as archive:
-            arrays = {name: archive[name] for name in archive.files}
-        header = dict(json.loads(arrays.pop("header").tobytes()))
-        return header, arrays
-    except (
-        ValueError,
-        KeyError,
-        EOFError,
-        AttributeError,
-        TypeError,
-        zipfile.BadZipFile,
-    ) as error:
-        raise ValueError(
-            f"{source} is not a file of intention weights (.npz of `costeer train`), "
-            "or it is damaged"
-        ) from error
 
 
 def _check(weights: NetworkWeights, source: str) -> None:
@@ -174,24 +132,9 @@ def _check(weights: NetworkWeights, source: str) -> None:
         "output_bias": (1,),
     }
     for name, values in weights._asdict().items():
-        if values.shape != wanted[name] or values.size == 0:
-            raise ValueError(
-                f"{name} of {source} has the shape {values.shape}, expected "
-                f"{wanted[name]} for hidden size {hidden}"
-            )
-        if values.dtype.kind != "f":
-            raise ValueError(
-                f"{name} of {source} holds {values.dtype}, expected floats"
-            )
-        if not np.isfinite(values).all():
-            raise ValueError(f"{name} of {source} holds values that are not finite")
+        check_array(values, wanted[name], f"{name} of {source}")
     if not np.isin(weights.dispensable, (0.0, 1.0)).all():
         raise ValueError(
             f"dispensable of {source} is {weights.dispensable.tolist()}; it is 0 or 1 "
             "for each signal"
-        )
-    if (weights.feature_scale <= 0).any():
-        raise ValueError(
-            f"feature_scale of {source} is {weights.feature_scale.tolist()}; "
-            "standard deviations are positive"
         )

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
+from functools import cache
 from typing import Any, Generic, NamedTuple, TypeVar
 
 from costeer.base.array import Real
@@ -135,6 +136,18 @@ def checked_method(method: Any) -> Method[Any, Any]:  # Any: of whoever made it
         raise ValueError(
             f"{method!r} is no method; make one with costeer.Method(name=..., ...)"
         )
+    try:
+        return _checked(method)
+    except TypeError as error:
+        raise ValueError(
+            f"method {method.name!r} cannot be kept: {error}; give columns and "
+            "tunables as tuples"
+        ) from error
+
+
+@cache
+def _checked(method: Method[Any, Any]) -> Method[Any, Any]:
+    """`checked_method` of what is a method, judged once."""
     if not (isinstance(method.name, str) and _NAME.fullmatch(method.name)):
         raise ValueError(
             f"a method is called {method.name!r}; give it a name of small letters, "

@@ -12,6 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from costeer.base.described import value_at
 from costeer.base.packing import leaf_names, packed
 from costeer.devices.wheels.calibration import observer_parameters
 from costeer.devices.wheels.interface import Wheel, WheelReading
@@ -202,7 +203,7 @@ class Cabin:
         """Strength factor of the guidance now; 0 without assistance [-]."""
         for tunable in self.method.tunables:
             if tunable.name == "strength_factor":
-                return float(self.memory.parameters[place_of(self.method, tunable)])
+                return float(value_at(self._parameters, place_of(tunable)))
         return 1.0 if self.method.assists else 0.0
 
     def control(self, controls: Controls) -> NDArray[np.float64]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
-from costeer.base.packing import packed, unpack
+from costeer.base.described import value_at, with_value_at
 from costeer.loop.parameters import LoopParameters
 from costeer.methods.conditions import CONDITION_NAMES, condition
 from costeer.methods.registry import method_named
@@ -15,6 +15,7 @@ from costeer.runtime.setup import (
     DriveSetup,
     drive_method,
     drive_parameters,
+    offered_methods,
     under,
 )
 from costeer.runtime.tunables import checked_value, place_of, tunable_named
@@ -71,19 +72,18 @@ def chosen_parameters(setup: DriveSetup, chosen: Chosen) -> LoopParameters[Any]:
     """All parameters of the loop under what was chosen."""
     now = chosen_setup(setup, chosen)
     method, parameters = drive_method(now), drive_parameters(now)
-    values = packed(parameters)
     for name, value in chosen.tuned.get(chosen.method, {}).items():
-        values[place_of(method, tunable_named(method, name))] = value
-    return unpack(parameters, values)
+        parameters = with_value_at(
+            parameters, place_of(tunable_named(method, name)), value
+        )
+    return parameters
 
 
 def tuned_values(setup: DriveSetup, chosen: Chosen) -> Values:
     """Every tunable of the method that runs, changed or not."""
     method = drive_method(chosen_setup(setup, chosen))
-    values = packed(chosen_parameters(setup, chosen))
-    return {
-        each.name: float(values[place_of(method, each)]) for each in method.tunables
-    }
+    now = chosen_parameters(setup, chosen)
+    return {each.name: value_at(now, place_of(each)) for each in method.tunables}
 
 
 def checked_choice(

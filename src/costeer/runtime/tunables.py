@@ -3,12 +3,9 @@
 from __future__ import annotations
 
 import math
-from functools import cache
 
 from costeer.base.array import Real
-from costeer.base.packing import leaf_names
-from costeer.loop.parameters import LoopParameters
-from costeer.methods.interface import Tunable, usual_parameters
+from costeer.methods.interface import Tunable
 from costeer.methods.registry import AnyMethod
 
 
@@ -27,14 +24,9 @@ def tunable_named(method: AnyMethod, name: str) -> Tunable:
     return by_name[name]
 
 
-@cache
-def _leaves(method: AnyMethod) -> list[str]:
-    return leaf_names(LoopParameters(controller=usual_parameters(method)))
-
-
-def place_of(method: AnyMethod, tunable: Tunable) -> int:
-    """Where it lies in the packed `LoopParameters` of its method."""
-    return _leaves(method).index(f"controller.{tunable.leaf}")
+def place_of(tunable: Tunable) -> str:
+    """Its dotted place in the `LoopParameters` of its method."""
+    return f"controller.{tunable.leaf}"
 
 
 def checked_value(tunable: Tunable, value: Real) -> Real:

@@ -19,9 +19,10 @@ from typing import Any, NamedTuple
 import yaml
 from filelock import FileLock, Timeout
 
+from costeer.base.files import prepare_folder, write_text
+
 STUDY_FILE = "study.yaml"
 LOCK_FILE = ".lock"
-PROBE_FILE = ".writable.tmp"
 RECORDS = "records"
 FORMAT = 1
 """Of the folder; a later one that old code cannot read gets a higher number."""
@@ -102,7 +103,7 @@ def opened_study(
             process works in it.
         OSError: If it cannot be written.
     """
-    _prepare(path)
+    prepare_folder(path, STUDY_FILE, "study", (LOCK_FILE,))
     with locked(path):
         folder = StudyFolder(
             path, dict(configuration), configuration_hash(configuration)
@@ -147,43 +148,6 @@ def _owner(file: Path) -> str:
     with suppress(OSError, UnicodeDecodeError):
         return file.read_text() or "a process that just started"
     return "a process that just started"
-
-
-def write_text(file: Path, text: str) -> None:
-    """Write a text file, whole or not at all."""
-    partial = file.with_name(file.name + ".tmp")
-    try:
-        partial.write_text(text, encoding="utf-8", newline="\n")
-        partial.replace(file)
-    except BaseException:
-        partial.unlink(missing_ok=True)
-        raise
-
-
-def _prepare(path: Path) -> None:
-    if path.exists() and not path.is_dir():
-        raise ValueError(f"{path} is a file; give a folder, new or of this study")
-    try:
-        path.mkdir(parents=True, exist_ok=True)
-        _refuse_foreign(path)
-        probe = path / PROBE_FILE
-        probe.touch()
-        probe.unlink(missing_ok=True)
-    except OSError as error:
-        raise OSError(
-            f"cannot write in {path}: {error.strerror}; choose another folder"
-        ) from error
-
-
-def _refuse_foreign(path: Path) -> None:
-    """Refuse to spread a study over a folder that holds something else."""
-    names = {entry.name for entry in path.iterdir()}
-    foreign = names - {LOCK_FILE, PROBE_FILE, f"{STUDY_FILE}.tmp"}
-    if foreign and STUDY_FILE not in names:
-        raise ValueError(
-            f"{path} is not empty and not a study folder (it holds {min(foreign)}); "
-            "choose a new or empty folder"
-        )
 
 
 def _refuse_other(wanted: StudyFolder, found: StudyFolder) -> None:

@@ -31,11 +31,16 @@ class JobsStoppedError(Exception):
         self.failed = failed
 
 
-def default_jobs() -> int:
+def usable_cores() -> int:
     """Return how many processors this process may use."""
     if hasattr(os, "sched_getaffinity"):
-        return min(len(os.sched_getaffinity(0)), MOST_JOBS)
-    return min(os.cpu_count() or 1, MOST_JOBS)
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
+
+
+def default_jobs() -> int:
+    """Return how many threads are worth while."""
+    return min(usable_cores(), MOST_JOBS)
 
 
 def run_jobs(

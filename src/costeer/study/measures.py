@@ -102,9 +102,7 @@ def parameters_of(
     replan_gain = record.metadata.get("replan_gain")
     if not isinstance(replan_gain, (int, float)):
         return parameters
-    return MeasureParameters(
-        **{**parameters._asdict(), "replan_gain": float(replan_gain)}
-    )
+    return parameters._replace(replan_gain=float(replan_gain))
 
 
 def strength(factor: object) -> str:

@@ -10,7 +10,7 @@ from costeer.study.anova import pooled_f_tests
 from costeer.study.cells import Observations, level_indices
 from costeer.study.factorial import Design, compared_pairs
 from costeer.study.outcome import PUBLISHED, EffectRow, PairRow
-from costeer.study.rows import About, Comparison, effect_row, joined, pair_rows
+from costeer.study.rows import About, PairTest, effect_row, joined, pair_rows
 from costeer.study.ttests import independent_t_test
 
 
@@ -55,5 +55,5 @@ def published_pairs(
         cells = level_indices(observed, factor, pair)
         first, second = observed.values[cells == 0], observed.values[cells == 1]
         test = independent_t_test(first, second)
-        comparisons.append(Comparison(*pair, test, first.size, second.size))
+        comparisons.append(PairTest(*pair, test, first.size, second.size))
     return pair_rows(measure, PUBLISHED, comparisons)

@@ -6,12 +6,12 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
+from costeer.base.files import write_text
+from costeer.pages.frame import Picture, picture, write_figures
+from costeer.pages.style import styled
 from costeer.study.figures.catalogue import FIGURE_NAMES, draw_figures
-from costeer.study.figures.style import styled
-from costeer.study.folder import write_text
 from costeer.study.material import StudyMaterial, read_material
 from costeer.study.outcome import DroppedRow, EffectRow, PairRow, SummaryRow
-from costeer.study.reporting.frame import Picture, picture
 from costeer.study.reporting.page import render
 from costeer.study.trial_tables import write_csv
 
@@ -82,17 +82,10 @@ def _write_figures(
     folder: Path, material: StudyMaterial, tell: Callable[[str], None]
 ) -> Sequence[Picture]:
     """Write every figure that can be drawn, and remove those that no longer can."""
-    folder.mkdir(exist_ok=True)
     pictures = []
     with styled():
         for exhibit in draw_figures(material):
             tell(f"figure {exhibit.name}")
             pictures.append(picture(exhibit))
-    for each in pictures:
-        if each.svg:
-            write_text(folder / f"{each.exhibit.name}.svg", each.svg)
-    drawn = {each.exhibit.name for each in pictures if each.svg}
-    for name in FIGURE_NAMES:
-        if name not in drawn:
-            (folder / f"{name}.svg").unlink(missing_ok=True)
+    write_figures(folder, pictures, FIGURE_NAMES)
     return pictures

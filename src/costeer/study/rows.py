@@ -12,7 +12,7 @@ from costeer.study.outcome import EffectRow, PairRow
 from costeer.study.ttests import TTest, benjamini_hochberg, significance_mark
 
 
-class Comparison(NamedTuple):
+class PairTest(NamedTuple):
     """A pair of levels and the test between them.
 
     Attributes:
@@ -77,7 +77,7 @@ def effect_row(about: About, effect: str, test: FTest) -> EffectRow:
 
 
 def pair_rows(
-    measure: str, analysis: str, comparisons: Sequence[Comparison]
+    measure: str, analysis: str, comparisons: Sequence[PairTest]
 ) -> tuple[PairRow, ...]:
     """Return the rows of a family of pairs, corrected over the family."""
     corrected = benjamini_hochberg([each.test.p for each in comparisons])
@@ -88,7 +88,7 @@ def pair_rows(
 
 
 def _pair_row(
-    names: tuple[str, str], comparison: Comparison, p_corrected: float
+    names: tuple[str, str], comparison: PairTest, p_corrected: float
 ) -> PairRow:
     test = comparison.test
     return PairRow(

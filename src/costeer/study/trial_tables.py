@@ -15,7 +15,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from costeer.study.folder import write_text
+from costeer.base.files import write_text
 from costeer.study.trigger_costs import COST_COLUMNS
 
 TRIALS_FILE = "trials.csv"

@@ -12,7 +12,7 @@ from costeer.study.factorial import Design, compared_pairs
 from costeer.study.mixed import mixed_f_tests
 from costeer.study.outcome import MIXED, WITHIN, EffectRow, PairRow
 from costeer.study.repeated import repeated_f_test
-from costeer.study.rows import About, Comparison, effect_row, joined, pair_rows
+from costeer.study.rows import About, PairTest, effect_row, joined, pair_rows
 from costeer.study.ttests import paired_t_test
 
 _MOST_NAMED = 6  # names that a note can hold; all are in `dropped.csv`
@@ -67,7 +67,7 @@ def within_pairs(
         both = np.isfinite(means).all(axis=1)
         test = paired_t_test(means[both, 0], means[both, 1])
         num_pairs, note = int(both.sum()), _left_out(means, participants, pair)
-        comparisons.append(Comparison(*pair, test, num_pairs, num_pairs, note))
+        comparisons.append(PairTest(*pair, test, num_pairs, num_pairs, note))
     return pair_rows(measure, WITHIN, comparisons)
 
 

@@ -83,32 +83,17 @@ def simulate_recordings(
     seed: int,
     jobs: int = 1,
     progress: Callable[[int], None] | None = None,
+    first: int = FIRST_PARTICIPANT,
 ) -> list[Recording]:
-    """Manual trials to learn from, one each, of other drivers than any study.
+    """Manual trials, one each, of other drivers than any study.
 
     Args:
         num_drivers: How many.
         seed: Of the population and of all noise.
         jobs: Threads.
         progress: Told after each trial.
+        first: Number of the first driver: those from `FIRST_PARTICIPANT` on are to
+            learn from, those from `FIRST_UNSEEN` on are in no training.
     """
-    setups = [manual_setup(FIRST_PARTICIPANT + i, seed, i) for i in range(num_drivers)]
-    return simulate_setups(setups, jobs, progress)
-
-
-def simulate_unseen(
-    num_drivers: int,
-    seed: int,
-    jobs: int = 1,
-    progress: Callable[[int], None] | None = None,
-) -> list[Recording]:
-    """Manual trials of drivers who are in no training, one each.
-
-    Args:
-        num_drivers: How many.
-        seed: Of the population and of all noise.
-        jobs: Threads.
-        progress: Told after each trial.
-    """
-    setups = [manual_setup(FIRST_UNSEEN + i, seed, i) for i in range(num_drivers)]
+    setups = [manual_setup(first + i, seed, i) for i in range(num_drivers)]
     return simulate_setups(setups, jobs, progress)

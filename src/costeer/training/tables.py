@@ -23,8 +23,8 @@ from costeer.intention.features import (
     adjacent_side,
 )
 from costeer.records.columns import COLUMN_NAMES
-from costeer.training.datasets.resample import delayed, grid, held, sample_at
 from costeer.training.labels import crossings
+from costeer.training.resample import delayed, grid, held, sample_at
 
 Columns = Mapping[str, NDArray[Any]]  # Any: floats, lanes or labels
 

@@ -16,7 +16,8 @@ from costeer.drivers.population import (
     Traits,
     correlation_matrix,
 )
-from costeer.study.figures.style import (
+from costeer.pages.numerals import number
+from costeer.pages.style import (
     FULL_WIDTH_MM,
     INK,
     RULE,
@@ -28,7 +29,6 @@ from costeer.study.figures.style import (
     styled,
     svg_text,
 )
-from costeer.study.reporting.numerals import number
 from costeer.validation.drawn import UNITS, drawn_correlations
 from costeer.validation.look import OURS, no_counts, num_bins
 

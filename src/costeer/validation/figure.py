@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from costeer.base.array import Real
-from costeer.study.figures.style import (
+from costeer.pages.style import (
     FULL_WIDTH_MM,
     INK,
     NORMAL,
@@ -24,8 +24,8 @@ from costeer.study.figures.style import (
 )
 from costeer.validation.look import HUMAN, OURS, human_range, no_counts, num_bins
 from costeer.validation.manual import (
-    Comparison,
     ManualDriving,
+    TargetCheck,
     columns_of,
     compare,
 )
@@ -114,7 +114,7 @@ def _distribution(
     axes: Axes,
     panel: _Panel,
     values: NDArray[np.float64],
-    found: dict[str, Comparison],
+    found: dict[str, TargetCheck],
 ) -> None:
     """A histogram, the human range of its centre, and the population's."""
     shown = values * panel.factor
@@ -134,7 +134,7 @@ def _distribution(
     axes.set_title(_words(panel, found), size=SMALL)
 
 
-def _words(panel: _Panel, found: dict[str, Comparison]) -> str:
+def _words(panel: _Panel, found: dict[str, TargetCheck]) -> str:
     """Values and human ranges in words."""
     lines = [_told(found[panel.centre])]
     if panel.spread:
@@ -142,7 +142,7 @@ def _words(panel: _Panel, found: dict[str, Comparison]) -> str:
     return "\n".join(lines)
 
 
-def _told(comparison: Comparison) -> str:
+def _told(comparison: TargetCheck) -> str:
     target = comparison.target
     kind = target.quantity.rpartition(", ")[2].split(" ")[0]
     return (
@@ -151,7 +151,7 @@ def _told(comparison: Comparison) -> str:
     )
 
 
-def _shares(axes: Axes, found: dict[str, Comparison]) -> None:
+def _shares(axes: Axes, found: dict[str, TargetCheck]) -> None:
     """Shares with a glance: a bar each, on the human range."""
     for place, name in enumerate(_SHARES):
         comparison = found[name]

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from costeer.drivers.population import POPULATION_VERSION, participant_driver
 from costeer.identification.fit import DriverFit
 from costeer.identification.parameters import Estimate, value_of
-from costeer.study.figures.style import (
+from costeer.pages.style import (
     FULL_WIDTH_MM,
     INK,
     NORMAL,

@@ -7,7 +7,7 @@ import math
 from matplotlib.axes import Axes
 
 from costeer.base.array import Real
-from costeer.study.figures.style import INK, SIGNAL_COLOURS
+from costeer.pages.style import INK, SIGNAL_COLOURS
 
 HUMAN = SIGNAL_COLOURS["driver"]
 """People, and ranges from people."""

@@ -42,7 +42,7 @@ PLANNED_CHANGES = 8
 """Lane changes that the course asks of a driver: four events, out and back."""
 
 
-class Comparison(NamedTuple):
+class TargetCheck(NamedTuple):
     """One target beside what the population gives.
 
     Attributes:
@@ -148,14 +148,14 @@ def rows_of(driving: ManualDriving, measure: Measure) -> list[Row]:
     return driving.trials if measure.table == TRIALS else driving.changes
 
 
-def compare(driving: ManualDriving) -> list[Comparison]:
+def compare(driving: ManualDriving) -> list[TargetCheck]:
     """Every target beside what the population gives."""
     found = []
     for target in TARGETS:
         measure = MEASURES[target.name]
         values = columns_of(rows_of(driving, measure))(measure.column)
         value = target_statistic(measure, values)
-        found.append(Comparison(target, value, _within(target, value)))
+        found.append(TargetCheck(target, value, _within(target, value)))
     return found
 
 
@@ -163,13 +163,13 @@ def _within(target: Target, value: Real) -> bool:
     return target.low <= value <= target.high
 
 
-def missed_by(comparison: Comparison) -> Real:
+def missed_by(comparison: TargetCheck) -> Real:
     """How far the value lies outside the range, in the target's unit; 0 inside."""
     target, value = comparison.target, comparison.value
     return max(target.low - value, value - target.high, 0.0)
 
 
-def missed_share(comparison: Comparison) -> Real:
+def missed_share(comparison: TargetCheck) -> Real:
     """The same as a share of the limit that is missed [-]; 0 inside."""
     target = comparison.target
     limit = target.low if comparison.value < target.low else target.high

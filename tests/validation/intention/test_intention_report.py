@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from costeer.intention.features import DISTANCE, full_windows
 from costeer.intention.predictors.interface import Predictor
-from costeer.study.figures.style import styled
+from costeer.pages.style import styled
 from costeer.training.assessment import Asked, assess, assessment_facts
 from costeer.training.comparison import Contender
 from costeer.training.evaluate import DEFAULTS
@@ -142,16 +142,6 @@ def test_an_earlier_report_is_written_over_and_its_extra_figures_go(
     write_report(out, FULL._replace(network={}))
     assert not (out / "figures" / "learning-curves.svg").exists()
     assert "holds no learning curves" in (out / "report.html").read_text()
-
-
-def test_other_things_are_never_written_over(tmp_path: Path) -> None:
-    thesis = tmp_path / "thesis.tex"
-    thesis.write_text("years")
-    with pytest.raises(ValueError, match=r"holds thesis\.tex"):
-        prepare(tmp_path)
-    with pytest.raises(ValueError, match="is a file"):
-        prepare(thesis)
-    assert [path.name for path in tmp_path.iterdir()] == ["thesis.tex"]
 
 
 def test_one_driver_has_no_spread() -> None:

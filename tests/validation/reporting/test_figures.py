@@ -9,7 +9,7 @@ import pytest
 from matplotlib.figure import Figure
 from statsmodels.stats.proportion import proportion_confint
 
-from costeer.study.figures.style import styled
+from costeer.pages.style import styled
 from costeer.validation.look import HUMAN, LINE, num_bins
 from costeer.validation.people.findings import RealComparison
 from costeer.validation.people.ranges import QUANTITIES

@@ -7,10 +7,13 @@ import html
 import re
 import shutil
 from pathlib import Path
+from types import ModuleType
 
 import pytest
 
 from costeer.drivers.population import POPULATION_VERSION
+from costeer.validation.intention import report as judgement
+from costeer.validation.reporting import report
 from costeer.validation.reporting.report import prepare, write_validation
 from costeer.validation.targets import TARGETS
 from tests.validation.reporting.made_up import SEED, bare, evidence
@@ -166,15 +169,10 @@ def test_a_figure_of_an_earlier_report_does_not_stay(
     assert not (without / "figures" / "arms.svg").exists()
 
 
-def test_a_folder_with_other_things_is_refused(tmp_path: Path) -> None:
+@pytest.mark.parametrize("module", [report, judgement])
+def test_a_folder_with_other_things_is_refused(
+    module: ModuleType, tmp_path: Path
+) -> None:
     (tmp_path / "thesis.tex").write_text("")
     with pytest.raises(ValueError, match=r"it holds thesis\.tex"):
-        prepare(tmp_path)
-    with pytest.raises(ValueError, match="is a file"):
-        prepare(tmp_path / "thesis.tex")
-
-
-def test_a_folder_that_an_interrupted_run_left_is_taken(tmp_path: Path) -> None:
-    prepare(tmp_path / "report")
-    prepare(tmp_path / "report")
-    assert [path.name for path in (tmp_path / "report").iterdir()] == ["figures"]
+        module.prepare(tmp_path)

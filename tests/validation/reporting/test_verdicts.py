@@ -6,7 +6,7 @@ import math
 
 import pytest
 
-from costeer.validation.manual import Comparison
+from costeer.validation.manual import TargetCheck
 from costeer.validation.reporting.verdicts import (
     largest_miss,
     target_reason,
@@ -30,34 +30,34 @@ def spread(low: float, high: float) -> TargetSpread:
 
 
 def test_a_miss_is_told_in_its_unit_and_as_a_share_of_the_limit() -> None:
-    told = target_verdict(Comparison(SDLP, 0.30, False))
+    told = target_verdict(TargetCheck(SDLP, 0.30, False))
     assert told == "missed by 0.050 m (20 %)"
-    assert target_verdict(Comparison(SDLP, 0.12, False)) == "missed by 0.030 m (20 %)"
+    assert target_verdict(TargetCheck(SDLP, 0.12, False)) == "missed by 0.030 m (20 %)"
 
 
 def test_what_is_met_needs_no_reason() -> None:
-    met = Comparison(SDLP, 0.2, True)
+    met = TargetCheck(SDLP, 0.2, True)
     assert target_verdict(met) == "met"
     assert target_reason(met, spread(0.18, 0.22)) == ""
 
 
 def test_a_miss_whose_interval_reaches_the_range_may_be_chance() -> None:
-    missed = Comparison(SDLP, 0.26, False)
+    missed = TargetCheck(SDLP, 0.26, False)
     assert "chance" in target_reason(missed, spread(0.24, 0.28))
     assert "chance" not in target_reason(missed, spread(0.255, 0.265))
     assert SDLP.set_by in target_reason(missed, spread(0.255, 0.265))
 
 
 def test_a_value_that_is_not_known_is_neither_met_nor_missed() -> None:
-    unknown = Comparison(SDLP, math.nan, False)
+    unknown = TargetCheck(SDLP, math.nan, False)
     assert target_verdict(unknown) == "no value"
     assert largest_miss([unknown]) is None
 
 
 def test_the_largest_miss_is_the_largest_share_of_its_limit() -> None:
     torque = TARGETS[6]  # 0.2 to 0.7 N·m
-    by_tenth = Comparison(SDLP, 0.275, False)
-    by_fifth = Comparison(torque, 0.84, False)
+    by_tenth = TargetCheck(SDLP, 0.275, False)
+    by_fifth = TargetCheck(torque, 0.84, False)
     assert largest_miss([by_tenth, by_fifth]) == by_fifth
 
 

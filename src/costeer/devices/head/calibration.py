@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import json
 import math
-import os
 import re
 from collections.abc import Sequence
 from pathlib import Path
@@ -16,6 +15,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from costeer.base.files import write_text
 from costeer.devices.head.source import FULL_YAW, HeadDescription, HeadReading
 from costeer.devices.home import home_folder
 
@@ -189,12 +189,7 @@ def save_calibration(calibration: HeadCalibration, folder: Path | None = None) -
         **calibration._asdict(),
         "tracker": calibration.tracker._asdict(),
     }
-    partial = path.with_name(f".{path.name}.{os.getpid()}")
-    try:
-        partial.write_text(json.dumps(content, indent=1) + "\n", encoding="utf-8")
-        partial.replace(path)
-    finally:
-        partial.unlink(missing_ok=True)
+    write_text(path, json.dumps(content, indent=1) + "\n")
     return path
 
 

@@ -83,7 +83,7 @@ class SelfTestResult(NamedTuple):
     notes: tuple[str, ...]
 
 
-class Comparison(NamedTuple):
+class StoredAndFound(NamedTuple):
     """One value of a calibration beside what a test found.
 
     Attributes:
@@ -101,7 +101,7 @@ class Comparison(NamedTuple):
     unit: str
 
 
-def agrees(comparison: Comparison) -> bool:
+def agrees(comparison: StoredAndFound) -> bool:
     """Whether a test found about what is stored."""
     return abs(comparison.found - comparison.stored) <= comparison.allowed
 
@@ -317,7 +317,7 @@ def compare(
     stored: WheelCalibration,
     dt: float,
     pushes: ExcitationParameters = TEST_PUSHES,
-) -> Procedure[list[Comparison]]:
+) -> Procedure[list[StoredAndFound]]:
     """Push a wheel and hold what it does against its calibration.
 
     The wheel is open as `opened_for_test` says. The scale of the torque is not tested:
@@ -346,22 +346,22 @@ def compare(
         key=abs,
     )
     return [
-        Comparison("direction", stored.torque_sign, found.direction, 0.5, "-"),
+        StoredAndFound("direction", stored.torque_sign, found.direction, 0.5, "-"),
         _near("inertia", stored.inertia, largest * found.inertia, 0.2, 0.002, "kg·m²"),
         _near(
             "damping", stored.damping, largest * found.damping, 0.3, 0.03, "N·m·s/rad"
         ),
         _near("friction", stored.friction, largest * found.friction, 0.3, 0.05, "N·m"),
         _near("latency", stored.latency, found.latency, 0.2, 0.004, "s"),
-        Comparison("torque curve", 0.0, worst, 0.08, "of the largest"),
+        StoredAndFound("torque curve", 0.0, worst, 0.08, "of the largest"),
     ]
 
 
 def _near(
     name: str, stored: float, found: float, share: float, least: float, unit: str
-) -> Comparison:
+) -> StoredAndFound:
     """A value that may differ by a share of it, or by the least that matters."""
-    return Comparison(name, stored, found, max(share * stored, least), unit)
+    return StoredAndFound(name, stored, found, max(share * stored, least), unit)
 
 
 def opened_for_test(stored: WheelCalibration) -> WheelCalibration:

@@ -10,6 +10,7 @@ import re
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from costeer.base.files import replacing
 from costeer.devices.home import home_folder
 from costeer.devices.wheels.calibration import WheelCalibration, checked
 from costeer.devices.wheels.interface import WheelDescription
@@ -58,15 +59,10 @@ def save_calibration(calibration: WheelCalibration) -> Path:
     path = calibration_path(checked(calibration).identity)
     path.parent.mkdir(parents=True, exist_ok=True)
     text = json.dumps({"format": FORMAT, **calibration._asdict()}, indent=2)
-    partial = path.with_name(f".{path.name}.{os.getpid()}.part")
-    try:
-        with partial.open("w", encoding="utf-8") as file:
-            file.write(text + "\n")
-            file.flush()
-            os.fsync(file.fileno())
-        partial.replace(path)
-    finally:
-        partial.unlink(missing_ok=True)
+    with replacing(path) as partial, partial.open("w", encoding="utf-8") as file:
+        file.write(text + "\n")
+        file.flush()
+        os.fsync(file.fileno())
     return path
 
 

@@ -20,7 +20,6 @@ Gates of the LSTM are stacked in the order input, forget, cell, output:
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import NamedTuple
 
 import numpy as np
@@ -182,19 +181,5 @@ def _verdict(
     return said
 
 
-def crossing_probabilities(
-    weights: Mapping[str, CrossingTimeWeights],
-    features: NDArray[np.float64],
-    absent: tuple[str, ...] = (),
-) -> NDArray[np.float64]:
-    """Probability of a crossing within 3 s at every sample.
-
-    Args:
-        weights: By variant.
-        features: Facing right, NaN where missing, shape `(time, feature)`.
-        absent: Signals that the recording does not have.
-
-    Returns:
-        Shape `(time,)`; NaN where no full window ends or no variant can speak.
-    """
-    return by_variant(weights, features, absent, _verdict)
+crossing_probabilities = by_variant(_verdict)
+"""Probability of a crossing within 3 s at every sample, from weights by variant."""

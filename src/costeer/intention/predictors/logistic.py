@@ -9,7 +9,6 @@ signals could not form it; one set of coefficients per variant of the signals
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import NamedTuple
 
 import numpy as np
@@ -80,19 +79,5 @@ def _verdict(
     return np.asarray(sigmoid(numbers @ weights.coefficients + weights.intercept[0]))
 
 
-def crossing_probabilities(
-    weights: Mapping[str, LogisticWeights],
-    features: NDArray[np.float64],
-    absent: tuple[str, ...] = (),
-) -> NDArray[np.float64]:
-    """Probability of a crossing within 3 s at every sample.
-
-    Args:
-        weights: By variant.
-        features: Facing right, NaN where missing, shape `(time, feature)`.
-        absent: Signals that the recording does not have.
-
-    Returns:
-        Shape `(time,)`; NaN where no full window ends or no variant can speak.
-    """
-    return by_variant(weights, features, absent, _verdict)
+crossing_probabilities = by_variant(_verdict)
+"""Probability of a crossing within 3 s at every sample, from weights by variant."""

@@ -7,11 +7,6 @@ what is known of each fit. The same numbers give the same bytes.
 
 from __future__ import annotations
 
-import hashlib
-import io
-import json
-import os
-import zipfile
 from collections.abc import Mapping
 from importlib import resources
 from pathlib import Path
@@ -22,7 +17,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from costeer.intention import gru as network
-from costeer.intention.features import FEATURES, VARIANTS, WINDOW_LENGTH
+from costeer.intention.arrays import (
+    Arrays,
+    Form,
+    arrays_hash,
+    check_array,
+    read_arrays,
+    write_arrays,
+)
+from costeer.intention.features import VARIANTS
 from costeer.intention.predictors import (
     crossing_time,
     gru,
@@ -32,11 +35,13 @@ from costeer.intention.predictors import (
     support_vectors,
 )
 
-FORMAT_VERSION = 1
+FORM = Form(
+    version=1,
+    kind="fitted predictors (.npz)",
+    remedy="fit the predictors again",
+)
 SHIPPED = "baselines.npz"
-_TYPES = ("<f4", "<f8", "<i8")
-
-Arrays = dict[str, NDArray[Any]]
+TYPES = ("<f4", "<f8", "<i8")
 
 
 class Kind(NamedTuple):
@@ -76,11 +81,7 @@ class Baseline(NamedTuple):
 
 def baselines_hash(baselines: Mapping[str, Baseline]) -> str:
     """SHA-256 over names, shapes and little-endian bytes of all arrays."""
-    digest = hashlib.sha256()
-    for name, values in sorted(_stored(baselines).items()):
-        digest.update(f"{name}{values.shape}{values.dtype.str}".encode())
-        digest.update(values.tobytes())
-    return digest.hexdigest()
+    return arrays_hash(dict(sorted(_stored(baselines).items())))
 
 
 def save_baselines(path: Path, baselines: Mapping[str, Baseline]) -> None:
@@ -91,23 +92,13 @@ def save_baselines(path: Path, baselines: Mapping[str, Baseline]) -> None:
     """
     _check(baselines, "the set of predictors")
     ordered = {name: baselines[name] for name in KINDS if name in baselines}
-    header = {
-        "version": FORMAT_VERSION,
-        "features": list(FEATURES),
-        "window_length": WINDOW_LENGTH,
-        "hash": baselines_hash(ordered),
-        "facts": {name: one.facts for name, one in ordered.items()},
-    }
-    text = json.dumps(header, sort_keys=True, indent=1).encode()
-    buffer = io.BytesIO()
-    arrays: dict[str, Any] = {"header": np.frombuffer(text, np.uint8)}
-    np.savez(buffer, **(arrays | _stored(ordered)))
-    partial = path.with_name(f".{path.name}.{os.getpid()}")
-    try:
-        partial.write_bytes(buffer.getvalue())
-        partial.replace(path)
-    finally:
-        partial.unlink(missing_ok=True)
+    write_arrays(
+        path,
+        FORM,
+        _stored(ordered),
+        hash=baselines_hash(ordered),
+        facts={name: one.facts for name, one in ordered.items()},
+    )
 
 
 def load_baselines(path: Path | None = None) -> dict[str, Baseline]:
@@ -140,41 +131,12 @@ def _little_endian(values: NDArray[Any]) -> NDArray[Any]:
 
 
 def _parsed(content: bytes, source: str) -> dict[str, Baseline]:
-    header, arrays = _unpacked(content, source)
-    if header.get("version") != FORMAT_VERSION:
-        raise ValueError(
-            f"{source} has format version {header.get('version')}, this costeer reads "
-            f"version {FORMAT_VERSION}: fit the predictors again"
-        )
-    if header.get("features") != list(FEATURES):
-        raise ValueError(
-            f"{source} is for the signals {header.get('features')}, not "
-            f"{list(FEATURES)}: fit the predictors again"
-        )
+    header, arrays = read_arrays(content, FORM, source)
     found = _assembled(arrays, dict(header.get("facts", {})), source)
     _check(found, source)
     if baselines_hash(found) != header.get("hash"):
         raise ValueError(f"{source} was altered: its hash does not fit its numbers")
     return found
-
-
-def _unpacked(content: bytes, source: str) -> tuple[dict[str, Any], Arrays]:
-    """Header and arrays of the file."""
-    try:
-        with np.load(io.BytesIO(content), allow_pickle=False) as archive:
-            arrays = {name: archive[name] for name in archive.files}
-        return dict(json.loads(arrays.pop("header").tobytes())), arrays
-    except (
-        ValueError,
-        KeyError,
-        EOFError,
-        AttributeError,
-        TypeError,
-        zipfile.BadZipFile,
-    ) as error:
-        raise ValueError(
-            f"{source} is not a file of fitted predictors (.npz), or it is damaged"
-        ) from error
 
 
 def _assembled(
@@ -231,15 +193,4 @@ def _check(baselines: Mapping[str, Baseline], source: str) -> None:
             shapes = KINDS[name].module.expected_shapes(weights)
             for field, values in weights._asdict().items():
                 place = f"{name}/{variant}/{field} of {source}"
-                _check_array(np.asarray(values), shapes[field], place)
-
-
-def _check_array(values: NDArray[Any], shape: tuple[int, ...], place: str) -> None:
-    if values.shape != shape or values.size == 0:
-        raise ValueError(f"{place} has the shape {values.shape}, expected {shape}")
-    if values.dtype.newbyteorder("<").str not in _TYPES:
-        raise ValueError(f"{place} holds {values.dtype}, expected one of {_TYPES}")
-    if not np.isfinite(values).all():
-        raise ValueError(f"{place} holds values that are not finite")
-    if "_scale of" in place and (values <= 0).any():
-        raise ValueError(f"{place} is not positive; standard deviations are")
+                check_array(np.asarray(values), shapes[field], place, TYPES)

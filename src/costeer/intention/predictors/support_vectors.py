@@ -20,7 +20,6 @@ filter joins what it said over time. Our reading:
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from typing import NamedTuple
 
 import numpy as np
@@ -181,19 +180,5 @@ def _verdict(
     return np.asarray(sigmoid(filtered(logit, *weights.filter)))
 
 
-def crossing_probabilities(
-    weights: Mapping[str, SupportVectorWeights],
-    features: NDArray[np.float64],
-    absent: tuple[str, ...] = (),
-) -> NDArray[np.float64]:
-    """Probability of a crossing within 3 s at every sample.
-
-    Args:
-        weights: By variant.
-        features: Facing right, NaN where missing, shape `(time, feature)`.
-        absent: Signals that the recording does not have.
-
-    Returns:
-        Shape `(time,)`; NaN where no full window ends or no variant can speak.
-    """
-    return by_variant(weights, features, absent, _verdict)
+crossing_probabilities = by_variant(_verdict)
+"""Probability of a crossing within 3 s at every sample, from weights by variant."""

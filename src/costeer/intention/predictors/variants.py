@@ -8,7 +8,7 @@ the variant that does without it speaks until the head is back.
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping
-from typing import TypeVar
+from typing import Protocol, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,6 +25,21 @@ HEAD_MEMORY = 1.0
 """How long a lost head keeps its last yaw [s]. Source: assumed, a long glance."""
 
 Weights = TypeVar("Weights")
+_Given = TypeVar("_Given", contravariant=True)
+
+
+class Spoken(Protocol[_Given]):
+    """Probability of a crossing within 3 s at every sample, see `by_variant`."""
+
+    def __call__(
+        self,
+        weights: Mapping[str, _Given],
+        features: NDArray[np.float64],
+        absent: tuple[str, ...] = (),
+    ) -> NDArray[np.float64]:
+        """Shape `(time,)`, from the weights by variant."""
+
+
 Verdict = Callable[[Weights, tuple[str, ...], NDArray[np.float64]], NDArray[np.float64]]
 
 
@@ -64,33 +79,36 @@ def held_head(
     return held, (last >= 0) & (here - last <= HEAD_MEMORY * SAMPLE_RATE)
 
 
-def by_variant(
-    weights: Mapping[str, Weights],
-    features: NDArray[np.float64],
-    absent: tuple[str, ...],
-    verdict: Verdict[Weights],
-) -> NDArray[np.float64]:
-    """Verdict of the variant that fits, at every sample.
+def by_variant(verdict: Verdict[Weights]) -> Spoken[Weights]:
+    """Verdicts at every sample from those of single variants.
 
     Args:
-        weights: By variant.
-        features: Facing right, NaN where missing, shape `(time, feature)`.
-        absent: Signals that the recording does not have.
         verdict: From weights, the signals they use and features without lost heads.
 
     Returns:
-        Shape `(time,)`; NaN where no full window of valid samples ends, or no variant
+        A function of the weights by variant, the features, shape `(time, feature)`,
+        facing right and NaN where missing, and the signals that the recording does not
+        have. It gives the probability of a crossing within 3 s, shape `(time,)`: of the
+        variant that fits, NaN where no full window of valid samples ends or no variant
         can speak.
     """
-    held, seen = held_head(features)
 
-    def spoken(missing: tuple[str, ...]) -> NDArray[np.float64]:
-        name = richest_variant(weights.keys(), missing)
-        if name is None:
-            return np.full(len(features), np.nan)
-        return verdict(weights[name], signals_of(name), held)
+    def crossing_probabilities(
+        weights: Mapping[str, Weights],
+        features: NDArray[np.float64],
+        absent: tuple[str, ...] = (),
+    ) -> NDArray[np.float64]:
+        held, seen = held_head(features)
 
-    said = spoken(absent)
-    if "head_yaw" not in absent and not seen.all():
-        said = np.where(seen, said, spoken((*absent, "head_yaw")))
-    return np.where(full_windows(features, absent), said, np.nan)
+        def spoken(missing: tuple[str, ...]) -> NDArray[np.float64]:
+            name = richest_variant(weights.keys(), missing)
+            if name is None:
+                return np.full(len(features), np.nan)
+            return verdict(weights[name], signals_of(name), held)
+
+        said = spoken(absent)
+        if "head_yaw" not in absent and not seen.all():
+            said = np.where(seen, said, spoken((*absent, "head_yaw")))
+        return np.where(full_windows(features, absent), said, np.nan)
+
+    return crossing_probabilities

@@ -9,8 +9,8 @@ from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
 from costeer.methods.conditions import MANUAL, condition
-from costeer.study.figures.exhibit import Exhibit, not_drawn
-from costeer.study.figures.style import (
+from costeer.pages.exhibit import Exhibit, not_drawn
+from costeer.pages.style import (
     COLUMN_WIDTH_MM,
     FAINT,
     FULL_WIDTH_MM,
@@ -19,12 +19,12 @@ from costeer.study.figures.style import (
     SMALL,
     STRENGTH_COLOURS,
     Margins,
-    condition_colour,
     interval_bar,
     new_figure,
     panel_letter,
     panels,
 )
+from costeer.study.figures.colours import condition_colour
 from costeer.study.material import (
     StudyMaterial,
     conditions_driven,

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from costeer.methods.conditions import STRENGTHS
+from costeer.pages.exhibit import Exhibit
 from costeer.study.figures import (
     bars,
     detection,
@@ -15,7 +16,6 @@ from costeer.study.figures import (
     workload,
 )
 from costeer.study.figures.episodes import exemplary_inconsistency
-from costeer.study.figures.exhibit import Exhibit
 from costeer.study.material import StudyMaterial, replan_gain
 from costeer.study.quantities import QUANTITIES, WORKLOAD
 

@@ -7,20 +7,20 @@ from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
 from costeer.methods.conditions import condition
-from costeer.study.figures.exhibit import Exhibit, not_drawn
-from costeer.study.figures.style import (
+from costeer.pages.exhibit import Exhibit, not_drawn
+from costeer.pages.style import (
     FAINT,
     FULL_WIDTH_MM,
     SMALL,
     STRENGTH_COLOURS,
     STRENGTH_LINES,
     Margins,
-    condition_colour,
     interval_bar,
     new_figure,
     panel_letter,
     panels,
 )
+from costeer.study.figures.colours import condition_colour
 from costeer.study.material import StudyMaterial, conditions_driven
 from costeer.study.quantities import half_width
 

@@ -7,9 +7,8 @@ from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
 from costeer.controller.strength import StrengthParameters, haptic_gain
-from costeer.study.figures.episodes import Episode, inconsistent_spans
-from costeer.study.figures.exhibit import Exhibit
-from costeer.study.figures.style import (
+from costeer.pages.exhibit import Exhibit
+from costeer.pages.style import (
     COLUMN_WIDTH_MM,
     FAINT,
     FULL_WIDTH_MM,
@@ -23,6 +22,7 @@ from costeer.study.figures.style import (
     panel_letter,
     panels,
 )
+from costeer.study.figures.episodes import Episode, inconsistent_spans
 
 NAME = "gain-adjustment"
 TITLE = "Gain adjustment"

@@ -9,9 +9,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
-from costeer.study.figures.episodes import Episode, inconsistent_spans
-from costeer.study.figures.exhibit import Exhibit, not_drawn
-from costeer.study.figures.style import (
+from costeer.pages.exhibit import Exhibit, not_drawn
+from costeer.pages.style import (
     FAINT,
     FULL_WIDTH_MM,
     INK,
@@ -22,6 +21,7 @@ from costeer.study.figures.style import (
     new_figure,
     panels,
 )
+from costeer.study.figures.episodes import Episode, inconsistent_spans
 
 NAME = "inconsistency"
 TITLE = "One inconsistency, from trigger to recovery"

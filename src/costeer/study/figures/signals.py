@@ -11,20 +11,20 @@ from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
 from costeer.methods.conditions import MANUAL, condition
-from costeer.records.record import read_record
-from costeer.study.crossings import RIGHT
-from costeer.study.figures.episodes import falls, rises
-from costeer.study.figures.exhibit import Exhibit, not_drawn
-from costeer.study.figures.style import (
+from costeer.pages.exhibit import Exhibit, not_drawn
+from costeer.pages.style import (
     FAINT,
     FULL_WIDTH_MM,
     SHADE,
     STRENGTH_COLOURS,
     Margins,
-    condition_colour,
     new_figure,
     panels,
 )
+from costeer.records.record import read_record
+from costeer.study.crossings import RIGHT
+from costeer.study.figures.colours import condition_colour
+from costeer.study.figures.episodes import falls, rises
 from costeer.study.material import LANE_LINE, LANE_TICKS, StudyMaterial
 from costeer.study.quantities import DEG
 

@@ -11,10 +11,8 @@ from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
 from costeer.methods.conditions import CONDITIONS, DURATIONS, MANUAL
-from costeer.records.record import read_record
-from costeer.study.crossings import LEFT, RIGHT
-from costeer.study.figures.exhibit import Exhibit, not_drawn
-from costeer.study.figures.style import (
+from costeer.pages.exhibit import Exhibit, not_drawn
+from costeer.pages.style import (
     FAINT,
     FULL_WIDTH_MM,
     STRENGTH_COLOURS,
@@ -24,6 +22,8 @@ from costeer.study.figures.style import (
     panel_letter,
     panels,
 )
+from costeer.records.record import read_record
+from costeer.study.crossings import LEFT, RIGHT
 from costeer.study.material import LANE_LINE, LANE_TICKS, StudyMaterial
 from costeer.study.quantities import half_width
 

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from costeer.pages.exhibit import Exhibit, not_drawn
 from costeer.study.figures import bars
-from costeer.study.figures.exhibit import Exhibit, not_drawn
 from costeer.study.material import StudyMaterial, is_virtual
 from costeer.study.quantities import WORKLOAD
 

@@ -16,7 +16,7 @@ from costeer.study.outcome import PUBLISHED, WITHIN, PairRow
 from costeer.study.quantities import BY_STRENGTH, QUANTITIES, WORKLOAD, Quantity
 
 
-class Comparison(NamedTuple):
+class AgainstManual(NamedTuple):
     """One level of a factor against manual driving.
 
     Attributes:
@@ -44,7 +44,7 @@ def compared_levels(material: StudyMaterial, quantity: Quantity) -> tuple[str, .
     return tuple(name for name in driven(material) if name != MANUAL)
 
 
-def comparisons(material: StudyMaterial, quantity: Quantity) -> list[Comparison]:
+def comparisons(material: StudyMaterial, quantity: Quantity) -> list[AgainstManual]:
     """Return each level against manual driving under both analyses."""
     found = []
     for level in compared_levels(material, quantity):
@@ -55,7 +55,7 @@ def comparisons(material: StudyMaterial, quantity: Quantity) -> list[Comparison]
         differences = [row.mean_difference for row in rows if row is not None]
         known = [each for each in differences if math.isfinite(each)]
         found.append(
-            Comparison(
+            AgainstManual(
                 level=level,
                 difference=known[0] * quantity.factor if known else math.nan,
                 within=_direction(rows[0]),

@@ -7,10 +7,10 @@ import math
 import pandas as pd
 
 from costeer.methods.conditions import MANUAL
+from costeer.pages.numerals import NOTHING, count, number, percent
+from costeer.pages.tables import Table
 from costeer.study.material import StudyMaterial, conditions_driven
-from costeer.study.reporting.numerals import NOTHING, count, number, percent
 from costeer.study.reporting.overview import tallies, total, weighted
-from costeer.study.reporting.tables import Table
 
 
 def lane_changes_table(material: StudyMaterial) -> Table:

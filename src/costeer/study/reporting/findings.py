@@ -11,16 +11,16 @@ import math
 from typing import NamedTuple
 
 from costeer.methods.conditions import MANUAL
+from costeer.pages.numerals import listed, number, signed
 from costeer.study.material import StudyMaterial, summary
 from costeer.study.outcome import PUBLISHED, WITHIN
 from costeer.study.quantities import BY_STRENGTH, Quantity
 from costeer.study.reporting.comparisons import (
-    Comparison,
+    AgainstManual,
     compared_levels,
     comparisons,
     shown_quantities,
 )
-from costeer.study.reporting.numerals import listed, number, signed
 
 _MOST_LISTED = 3
 _NUMBERS = ("no", "one", "two", "three", "four", "five", "six")
@@ -90,7 +90,7 @@ def _most_certain_first(kind: tuple[int | None, int | None]) -> tuple[int, int]:
 def _group_sentence(
     quantity: Quantity,
     kind: tuple[int | None, int | None],
-    levels: list[Comparison],
+    levels: list[AgainstManual],
     num_levels: int,
 ) -> str:
     within, pooled = kind
@@ -121,7 +121,9 @@ _WHICH_ANALYSIS = {
 }
 
 
-def _levels_text(quantity: Quantity, levels: list[Comparison], num_levels: int) -> str:
+def _levels_text(
+    quantity: Quantity, levels: list[AgainstManual], num_levels: int
+) -> str:
     """Name the levels and their differences from manual."""
     names = [each.level for each in levels]
     by_strength = quantity.name in BY_STRENGTH
@@ -138,7 +140,7 @@ def _levels_text(quantity: Quantity, levels: list[Comparison], num_levels: int) 
     return f"{where} ({low} to {high} {quantity.unit})"
 
 
-def _difference(quantity: Quantity, comparison: Comparison) -> str:
+def _difference(quantity: Quantity, comparison: AgainstManual) -> str:
     if not math.isfinite(comparison.difference):
         return ""
     return f" ({signed(comparison.difference, quantity.digits)} {quantity.unit})"
@@ -210,7 +212,7 @@ def meaning(material: StudyMaterial) -> Meaning:
 
 
 def _where(
-    levels: list[Comparison], found: list[Comparison], quantity: Quantity
+    levels: list[AgainstManual], found: list[AgainstManual], quantity: Quantity
 ) -> str:
     """Name levels without their differences, and those the pooled test leaves open."""
     names = [each.level for each in levels]

@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import json
-import platform
-from importlib.metadata import version
 
+from costeer.pages.numerals import NOTHING, listed, number
+from costeer.pages.tables import Table
 from costeer.study.definitions import DEFAULTS
 from costeer.study.material import StudyMaterial
 from costeer.study.quantities import DEG
-from costeer.study.reporting.numerals import NOTHING, listed, number
-from costeer.study.reporting.tables import Table
 
 _SHOWN_ELSEWHERE = ("order", "conditions")
 _PER_TRIAL = (
@@ -26,7 +24,6 @@ _PER_TRIAL = (
     "replan_gain",
     "torque_limit",
 )
-_LIBRARIES = ("numpy", "scipy", "numba", "pyarrow", "pandas", "matplotlib")
 _MOST_VALUES = 6
 
 
@@ -129,21 +126,6 @@ def thresholds_table() -> Table:
 
 def _deg(name: str) -> str:
     return number(float(getattr(DEFAULTS, name)) * DEG, 1)
-
-
-def versions_table() -> Table:
-    """Return the programs that made tables, tests, figures and this page."""
-    rows = [("costeer", version("costeer")), ("Python", platform.python_version())]
-    rows += [(name, version(name)) for name in _LIBRARIES]
-    return Table(
-        name="versions",
-        title="Versions that made this report",
-        note="",
-        header=("Program", "Version"),
-        rows=tuple(rows),
-        num_labels=2,
-        prose=True,
-    )
 
 
 def _text(value: object) -> str:

@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import Any
 
 from costeer.intention.weights import load_weights
+from costeer.pages.numerals import interval, number
+from costeer.pages.tables import Table
 from costeer.study.material import StudyMaterial
-from costeer.study.reporting.numerals import interval, number
-from costeer.study.reporting.tables import Table
 
 _SHOWN = {
     "accuracy_of_never": "Accuracy of never expecting a crossing",

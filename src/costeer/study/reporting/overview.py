@@ -8,6 +8,7 @@ from typing import NamedTuple
 import pandas as pd
 
 from costeer.methods.conditions import CONDITION_NAMES
+from costeer.pages.numerals import listed, number, percent, plural
 from costeer.plant.traffic import TrafficParameters
 from costeer.study.material import (
     StudyMaterial,
@@ -15,7 +16,6 @@ from costeer.study.material import (
     is_virtual,
     strengths_driven,
 )
-from costeer.study.reporting.numerals import listed, number, percent, plural
 
 CHANGES_PER_EVENT = 2
 """One to the right, one back to the left. Source: the paper, Sec. III-B."""

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from costeer.pages.frame import Picture, render_page
 from costeer.study.material import StudyMaterial, is_virtual
 from costeer.study.reporting import findings, overview
 from costeer.study.reporting.comparisons import shown_quantities
-from costeer.study.reporting.frame import Picture, render_page
 from costeer.study.reporting.sections import page_sections
 
 
@@ -26,7 +26,7 @@ def render(material: StudyMaterial, pictures: Sequence[Picture]) -> str:
         "meaning": findings.meaning(material),
     }
     sections = page_sections(material, {each.exhibit.name: each for each in pictures})
-    return render_page("report.html", sections, words)
+    return render_page("report.html", sections, words, "costeer.study")
 
 
 def _outcomes(material: StudyMaterial) -> list[tuple[str, str]]:

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
+from costeer.pages.frame import Picture, Section
+from costeer.pages.tables import Table, versions_table
 from costeer.study.material import StudyMaterial, is_virtual
 from costeer.study.quantities import BY_STRENGTH, WORKLOAD
 from costeer.study.reporting import event_tables, making, statistics_tables, tables
 from costeer.study.reporting.comparisons import shown_quantities
-from costeer.study.reporting.frame import Picture, Section
 from costeer.study.reporting.network import network_table
-from costeer.study.reporting.tables import Table
 from costeer.study.reporting.trigger_tables import trigger_costs_table
 
 
@@ -179,7 +179,7 @@ def _making(material: StudyMaterial) -> Section:
         making.records_table(material),
         making.thresholds_table(),
         making.order_table(material),
-        making.versions_table(),
+        versions_table(),
     )
     whole = (*virtual, *text) if is_virtual(material) else text
     return Section("making", "How it was made", whole, items)

@@ -4,11 +4,7 @@ from __future__ import annotations
 
 import math
 
-from costeer.study.material import StudyMaterial
-from costeer.study.outcome import MIXED, PUBLISHED, WITHIN, EffectRow, PairRow
-from costeer.study.quantities import Quantity
-from costeer.study.reporting.comparisons import shown_quantities
-from costeer.study.reporting.numerals import (
+from costeer.pages.numerals import (
     NOTHING,
     degrees_of_freedom,
     interval,
@@ -16,7 +12,11 @@ from costeer.study.reporting.numerals import (
     p_value,
     signed,
 )
-from costeer.study.reporting.tables import Table
+from costeer.pages.tables import Table
+from costeer.study.material import StudyMaterial
+from costeer.study.outcome import MIXED, PUBLISHED, WITHIN, EffectRow, PairRow
+from costeer.study.quantities import Quantity
+from costeer.study.reporting.comparisons import shown_quantities
 
 EFFECTS = {
     "condition": "condition",

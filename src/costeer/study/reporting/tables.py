@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import NamedTuple
 
 from costeer.methods.conditions import MANUAL
+from costeer.pages.numerals import NOTHING, count, interval, number
+from costeer.pages.tables import Table
 from costeer.study.material import (
     StudyMaterial,
     conditions_driven,
@@ -18,49 +19,6 @@ from costeer.study.material import (
 from costeer.study.outcome import PUBLISHED, WITHIN
 from costeer.study.quantities import BY_STRENGTH, DEG, Quantity
 from costeer.study.reporting.comparisons import shown_quantities
-from costeer.study.reporting.numerals import (
-    NOTHING,
-    count,
-    interval,
-    number,
-)
-
-
-class Table(NamedTuple):
-    """A table of the report.
-
-    Attributes:
-        name: Anchor.
-        title: Caption.
-        note: What one must know to read it; may be empty.
-        header: Names of the columns.
-        rows: Text of the cells; a line break in a cell is shown as one.
-        num_labels: Leading columns that are words, not numbers.
-        prose: Whether cells may be broken into lines anywhere.
-        num_words: Last columns that are words, not numbers.
-    """
-
-    name: str
-    title: str
-    note: str
-    header: tuple[str, ...]
-    rows: tuple[tuple[str, ...], ...]
-    num_labels: int = 1
-    prose: bool = False
-    num_words: int = 0
-
-
-MOST_ROWS = 150
-"""Rows of a table on the page: the 84 trials of the published study have room."""
-
-
-def shortened(table: Table) -> Table:
-    """Return a table that is not too long for a page; its note says what is cut."""
-    more = len(table.rows) - MOST_ROWS
-    if more <= 0:
-        return table
-    note = f"{table.note} {more} more rows stand in the CSV files of the study."
-    return table._replace(rows=table.rows[:MOST_ROWS], note=note.strip())
 
 
 def measures_table(material: StudyMaterial) -> Table:

@@ -5,13 +5,13 @@ from __future__ import annotations
 import pandas as pd
 
 from costeer.methods.conditions import MANUAL
+from costeer.pages.numerals import NOTHING, count, interval, number
+from costeer.pages.tables import Table
 from costeer.study.definitions import DEFAULTS
 from costeer.study.detection import EARLY, FALSE, TRUE
 from costeer.study.material import StudyMaterial, conditions_driven
 from costeer.study.rates import poisson_interval
 from costeer.study.reporting.event_tables import spread_text
-from costeer.study.reporting.numerals import NOTHING, count, interval, number
-from costeer.study.reporting.tables import Table
 from costeer.study.trigger_episodes import MISSED
 
 EVENTS = {

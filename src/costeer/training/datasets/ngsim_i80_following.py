@@ -18,10 +18,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from costeer.training.datasets.resample import slope
 from costeer.training.datasets.stretches import Stretch, both_runs, cut
 from costeer.training.datasets.tables import Columns, Table, groups, table_of
 from costeer.training.recordings import Recording
+from costeer.training.resample import slope
 
 FILES = ("pairs.csv.gz",)
 

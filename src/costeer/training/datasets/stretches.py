@@ -24,7 +24,9 @@ from costeer.intention.features import (
     WINDOW_LENGTH,
     feature_series,
 )
-from costeer.training.datasets.resample import (
+from costeer.training.labels import Labels, labels
+from costeer.training.recordings import Recording
+from costeer.training.resample import (
     Grid,
     Series,
     delayed,
@@ -32,8 +34,6 @@ from costeer.training.datasets.resample import (
     held,
     sample_at,
 )
-from costeer.training.labels import Labels, labels
-from costeer.training.recordings import Recording
 
 _DISTANCE = "distance_to_adjacent_lane"
 _LANE_JUMP = 1.0  # m from row to row: no car, but the distance at a crossing

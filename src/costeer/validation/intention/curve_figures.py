@@ -7,8 +7,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from costeer.study.figures.exhibit import Exhibit
-from costeer.study.figures.style import (
+from costeer.pages.exhibit import Exhibit
+from costeer.pages.style import (
     FAINT,
     FULL_WIDTH_MM,
     INK,

@@ -6,8 +6,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
-from costeer.study.figures.exhibit import Exhibit, not_drawn
-from costeer.study.figures.style import (
+from costeer.pages.exhibit import Exhibit, not_drawn
+from costeer.pages.style import (
     COLUMN_WIDTH_MM,
     FAINT,
     FULL_WIDTH_MM,

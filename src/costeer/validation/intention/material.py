@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from costeer.study.figures.style import INK
+from costeer.pages.style import INK
 from costeer.training.assessment import Assessment, shown
 from costeer.training.comparison import Judged
 from costeer.training.operating import best_place

@@ -5,11 +5,10 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
-from costeer.study.figures.exhibit import not_drawn
-from costeer.study.figures.style import styled
-from costeer.study.folder import write_text
-from costeer.study.reporting.frame import Picture, Section, picture, render_page
-from costeer.study.reporting.making import versions_table
+from costeer.base.files import prepare_folder, write_text
+from costeer.pages.frame import Picture, Section, picture, render_page, write_figures
+from costeer.pages.style import styled
+from costeer.pages.tables import versions_table
 from costeer.training.comparison import excluded_told
 from costeer.validation.intention import (
     curve_figures,
@@ -24,34 +23,9 @@ FIGURES, REPORT_FILE, JSON_FILE = "figures", "report.html", "evaluation.json"
 
 
 def prepare(folder: Path) -> None:
-    """Make the folder, and refuse it before minutes of judging.
-
-    Args:
-        folder: New, empty, or with an earlier report.
-
-    Raises:
-        ValueError: If it is a file or holds other things.
-        OSError: If it cannot be written.
-    """
-    if folder.exists() and not folder.is_dir():
-        raise ValueError(f"{folder} is a file; give --out a folder")
-    if folder.is_dir() and not (folder / JSON_FILE).exists():
-        names = sorted(path.name for path in folder.iterdir())
-        empty = names == [FIGURES] and not any((folder / FIGURES).iterdir())
-        if names and not empty:
-            raise ValueError(
-                f"{folder} is not empty and holds no judgement (it holds {names[0]}); "
-                "give --out a new or empty folder"
-            )
-    try:
-        (folder / FIGURES).mkdir(parents=True, exist_ok=True)
-        probe = folder / f".{REPORT_FILE}.probe"
-        probe.touch()
-        probe.unlink()
-    except OSError as error:
-        raise OSError(
-            f"cannot write in {folder}: {error.strerror}; choose another folder"
-        ) from error
+    """Make the folder, as `prepare_folder` does, before minutes of work."""
+    prepare_folder(folder, JSON_FILE, "judgement")
+    (folder / FIGURES).mkdir(exist_ok=True)
 
 
 def write_report(folder: Path, material: Material) -> Path:
@@ -67,20 +41,18 @@ def write_report(folder: Path, material: Material) -> Path:
         Path of the page.
     """
     pictures = draw_pictures(material)
-    for stale in (folder / FIGURES).glob("*.svg"):
-        if not pictures.get(stale.stem, _NONE).svg:
-            stale.unlink()
-    for name, each in pictures.items():
-        if each.svg:
-            write_text(folder / FIGURES / f"{name}.svg", each.svg)
+    write_figures(folder / FIGURES, pictures.values())
     tables.write_tables(folder, material)
     words = {
+        "title": "Judgement of an intention predictor",
+        "heading": "Intention to change lanes: what the predictors are worth",
         "subtitle": subtitle(material),
         "looked_at": looked_at(material),
         "outcomes": outcomes(material),
+        "caution": (),
     }
     sections = page_sections(material, pictures)
-    page = render_page("intention.html", sections, words, "costeer.validation")
+    page = render_page("judgement.html", sections, words)
     write_text(folder / REPORT_FILE, page)
     text = json.dumps(material.facts, indent=1, allow_nan=False)
     write_text(folder / JSON_FILE, f"{text}\n")
@@ -169,7 +141,3 @@ def _making(material: Material, drawn: dict[str, Picture]) -> Section:
     )
     items = (drawn[own_figures.LEARNING], versions_table())
     return Section("making", "How it was made", text, items)
-
-
-_NONE = Picture(not_drawn("", "", ""), "", half=False)
-"""Stands for a figure that is not on the page."""

@@ -5,8 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from costeer.study.reporting.numerals import NOTHING, interval, number, signed
-from costeer.study.reporting.tables import Table
+from costeer.pages.numerals import NOTHING, interval, number, signed
+from costeer.pages.tables import Table
 from costeer.study.trial_tables import write_csv
 from costeer.training.assessment import shown
 from costeer.training.bootstrap import AT_RATE

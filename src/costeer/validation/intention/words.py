@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from costeer.study.reporting.numerals import listed, plural
+from costeer.pages.numerals import listed, plural
 from costeer.training.bootstrap import AT_RATE
 from costeer.training.comparison import BETTER, TIE, UNKNOWN, WORSE, Comparison
 from costeer.validation.intention.material import Material

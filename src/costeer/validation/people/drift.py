@@ -9,6 +9,7 @@ not remove it; it adds to the drift there.
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from pathlib import Path
 from typing import NamedTuple
 
@@ -42,6 +43,7 @@ _KEEPING = 1.0  # of the set's column `decision`
 _CLEAR_OF_CHANGE = 5.0  # s
 _JUMP = 0.3  # m between two samples: the lane lines were confused
 _RECORD_RATE = 60.0
+_NONE: Values = np.empty((0, WINDOW_SAMPLES))
 _R3 = Columns(numbers=("t", "v", "deviation", "decision"), texts=("scenario",))
 _NGSIM = Columns(numbers=("time", "local_x"), texts=("pair_id",))
 
@@ -141,7 +143,7 @@ def highway_windows(folder: Path | None) -> Values:
     """
     path = table_path(folder, "r3_driving")
     if path is None:
-        return np.empty((0, WINDOW_SAMPLES))
+        return _NONE
     table = read_table(path, _R3)
     found = []
     for rows in groups(table["scenario"]):
@@ -150,7 +152,7 @@ def highway_windows(folder: Path | None) -> Values:
         good = keeping & (table["v"][rows] > LEAST_SPEED)
         jumps = np.abs(np.diff(position, prepend=position[:1])) > _JUMP
         found.append(cut(position, good & ~_near(time, jumps | ~keeping)))
-    return np.concatenate([np.empty((0, WINDOW_SAMPLES)), *found])
+    return np.concatenate([_NONE, *found])
 
 
 def _near(time: Values, flags: Flags) -> NDArray[np.bool_]:
@@ -173,25 +175,22 @@ def following_windows(folder: Path | None) -> Values:
     """
     path = table_path(folder, "ngsim_i80_following")
     if path is None:
-        return np.empty((0, WINDOW_SAMPLES))
+        return _NONE
     table = read_table(path, _NGSIM)
-    position = table["local_x"]
-    found = [
-        cut(position[rows], np.ones(rows.size, bool))
-        for rows in groups(table["pair_id"])
-    ]
-    return np.concatenate([np.empty((0, WINDOW_SAMPLES)), *found])
+    return _cut_each(table["local_x"][rows] for rows in groups(table["pair_id"]))
 
 
 def record_windows(record: TrialRecord) -> Values:
     """The same windows of a trial: its lane keeping as the study's measures cut it."""
     segments = segment(record.columns, parameters_of(record))
     if not isinstance(segments, Segments):
-        return np.empty((0, WINDOW_SAMPLES))
+        return _NONE
     position = np.asarray(record.columns["lateral_position"])
     every = round(_RECORD_RATE / RATE)
-    found = [
-        cut(thinned, np.ones(thinned.size, bool))
-        for thinned in (position[rows][::every] for rows in segments.lane_keeping)
-    ]
-    return np.concatenate([np.empty((0, WINDOW_SAMPLES)), *found])
+    return _cut_each(position[rows][::every] for rows in segments.lane_keeping)
+
+
+def _cut_each(stretches: Iterable[Values]) -> Values:
+    """Windows of stretches of which every sample may be used."""
+    found = [cut(each, np.ones(each.size, bool)) for each in stretches]
+    return np.concatenate([_NONE, *found])

@@ -7,15 +7,9 @@ from collections.abc import Sequence
 import numpy as np
 from matplotlib.axes import Axes
 
-from costeer.study.figures.exhibit import Exhibit
-from costeer.study.figures.style import (
-    FULL_WIDTH_MM,
-    SMALL,
-    Margins,
-    new_figure,
-    panels,
-)
-from costeer.study.reporting.numerals import percent
+from costeer.pages.exhibit import Exhibit
+from costeer.pages.numerals import percent
+from costeer.pages.style import FULL_WIDTH_MM, SMALL, Margins, new_figure, panels
 from costeer.validation.arms import PUBLISHED, ArmTest, arms_in_range
 from costeer.validation.look import HUMAN, LINE, OURS
 

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from costeer.study.trial_tables import write_csv
-from costeer.validation.manual import Comparison, missed_by, missed_share
+from costeer.validation.manual import TargetCheck, missed_by, missed_share
 from costeer.validation.people.findings import (
     RealComparison,
     known,
@@ -29,14 +29,14 @@ Row = dict[str, object]
 
 
 def write_targets(
-    file: Path, comparisons: Sequence[Comparison], spreads: Sequence[TargetSpread]
+    file: Path, comparisons: Sequence[TargetCheck], spreads: Sequence[TargetSpread]
 ) -> None:
     """Write a row per target, in the unit that the row names."""
     pairs = zip(comparisons, spreads, strict=True)
     write_csv(file, [_target_row(each, spread) for each, spread in pairs])
 
 
-def _target_row(comparison: Comparison, spread: TargetSpread) -> Row:
+def _target_row(comparison: TargetCheck, spread: TargetSpread) -> Row:
     target = comparison.target
     known_value = math.isfinite(comparison.value)
     return {

@@ -4,17 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from costeer.study.figures.exhibit import Exhibit
-from costeer.study.figures.style import (
-    COLUMN_WIDTH_MM,
-    INK,
-    SMALL,
-    Margins,
-    new_figure,
-    panels,
-)
-from costeer.study.reporting.numerals import count, number
-from costeer.study.reporting.tables import Table
+from costeer.pages.exhibit import Exhibit
+from costeer.pages.numerals import count, number
+from costeer.pages.style import COLUMN_WIDTH_MM, INK, SMALL, Margins, new_figure, panels
+from costeer.pages.tables import Table
 from costeer.validation.departures import Departures, DepartureSummary
 from costeer.validation.look import OURS
 from costeer.validation.reporting.words import short

@@ -13,8 +13,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from costeer.base.array import Real
-from costeer.study.figures.exhibit import Exhibit
-from costeer.study.figures.style import (
+from costeer.pages.exhibit import Exhibit
+from costeer.pages.style import (
     COLUMN_WIDTH_MM,
     FAINT,
     FULL_WIDTH_MM,

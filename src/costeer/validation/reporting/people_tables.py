@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from costeer.study.reporting.numerals import NOTHING, number
-from costeer.study.reporting.tables import Table
+from costeer.pages.numerals import NOTHING, number
+from costeer.pages.tables import Table
 from costeer.validation.people.findings import (
     SHARE,
     RealComparison,

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from costeer.study.figures.exhibit import Exhibit
-from costeer.study.figures.style import styled
-from costeer.study.reporting.frame import Picture, picture
+from costeer.pages.exhibit import Exhibit
+from costeer.pages.frame import Picture, picture
+from costeer.pages.style import styled
 from costeer.validation import figure as manual_figure
 from costeer.validation.departures import summarise
 from costeer.validation.drawn_figure import draw_parameters, parameters_description

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from costeer.drivers.population import FACTORS
-from costeer.study.reporting.numerals import signed
-from costeer.study.reporting.tables import Table
+from costeer.pages.numerals import signed
+from costeer.pages.tables import Table
 from costeer.validation.drawn import distribution_told, spreads
 from costeer.validation.drawn_figure import Population, spoken
 from costeer.validation.reporting.target_tables import wrapped

@@ -5,9 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from costeer.drivers.population import POPULATION_VERSION
-from costeer.study.reporting.frame import Picture, Section
-from costeer.study.reporting.making import versions_table
-from costeer.study.reporting.tables import Table
+from costeer.pages.frame import Picture, Section
+from costeer.pages.tables import Table, versions_table
 from costeer.validation.departures import summarise
 from costeer.validation.manual import compare
 from costeer.validation.overview import overview

@@ -8,8 +8,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from costeer.study.reporting.numerals import NOTHING, number, percent, plural
-from costeer.study.reporting.tables import Table
+from costeer.pages.numerals import NOTHING, number, percent, plural
+from costeer.pages.tables import Table
 from costeer.validation.arms import ArmRow, ArmTest, arm_rows
 from costeer.validation.reporting.words import short
 from costeer.validation.resistance import (

@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.axes import Axes
 
-from costeer.study.figures.exhibit import Exhibit
-from costeer.study.figures.style import (
+from costeer.pages.exhibit import Exhibit
+from costeer.pages.numerals import number
+from costeer.pages.style import (
     FULL_WIDTH_MM,
     INK,
     RULE,
@@ -15,7 +16,6 @@ from costeer.study.figures.style import (
     new_figure,
     panels,
 )
-from costeer.study.reporting.numerals import number
 from costeer.validation.manual import ManualDriving
 from costeer.validation.spread import TargetSpread, Values, driver_values
 from costeer.validation.targets import DEVIATION, MEASURES, TARGETS

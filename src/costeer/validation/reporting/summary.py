@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from costeer.drivers.population import POPULATION_VERSION
-from costeer.study.reporting.numerals import listed, number, percent, plural
+from costeer.pages.numerals import listed, number, percent, plural
 from costeer.validation.arms import arms_in_range
 from costeer.validation.departures import Departures, summarise
 from costeer.validation.manual import (
-    Comparison,
+    TargetCheck,
     columns_of,
     compare,
     missed_by,
@@ -88,7 +88,7 @@ def outcomes(evidence: Evidence) -> list[Point]:
     return points
 
 
-def targets_sentence(comparisons: Sequence[Comparison]) -> str:
+def targets_sentence(comparisons: Sequence[TargetCheck]) -> str:
     """How many targets are met, and which is missed most."""
     told = f"{num_met(comparisons)} of {len(comparisons)} targets are met."
     worst = largest_miss(comparisons)

@@ -5,9 +5,9 @@ from __future__ import annotations
 import textwrap
 from collections.abc import Sequence
 
-from costeer.study.reporting.numerals import NOTHING, interval, number
-from costeer.study.reporting.tables import Table
-from costeer.validation.manual import Comparison
+from costeer.pages.numerals import NOTHING, interval, number
+from costeer.pages.tables import Table
+from costeer.validation.manual import TargetCheck
 from costeer.validation.overview import Quantity
 from costeer.validation.reporting.verdicts import target_reason, target_verdict
 from costeer.validation.reporting.words import short, span
@@ -17,7 +17,7 @@ _WRAP = 30
 
 
 def targets_table(
-    comparisons: Sequence[Comparison], spreads: Sequence[TargetSpread]
+    comparisons: Sequence[TargetCheck], spreads: Sequence[TargetSpread]
 ) -> Table:
     """Return every target: range, value, spreads, verdict, source.
 
@@ -51,7 +51,7 @@ def targets_table(
     )
 
 
-def _target_row(comparison: Comparison, spread: TargetSpread) -> tuple[str, ...]:
+def _target_row(comparison: TargetCheck, spread: TargetSpread) -> tuple[str, ...]:
     target = comparison.target
     verdict = target_verdict(comparison)
     reason = target_reason(comparison, spread)

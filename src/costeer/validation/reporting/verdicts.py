@@ -6,12 +6,12 @@ import math
 from collections.abc import Sequence
 
 from costeer.base.array import Real
-from costeer.validation.manual import Comparison, missed_by, missed_share
+from costeer.validation.manual import TargetCheck, missed_by, missed_share
 from costeer.validation.reporting.words import MET, NOT_KNOWN, short
 from costeer.validation.spread import TargetSpread
 
 
-def target_verdict(comparison: Comparison) -> str:
+def target_verdict(comparison: TargetCheck) -> str:
     """Return met, missed by how much, or no value."""
     if comparison.met:
         return MET
@@ -22,7 +22,7 @@ def target_verdict(comparison: Comparison) -> str:
     return f"missed by {short(amount, 2)} {unit} ({short(100.0 * share, 2)} %)"
 
 
-def target_reason(comparison: Comparison, spread: TargetSpread) -> str:
+def target_reason(comparison: TargetCheck, spread: TargetSpread) -> str:
     """Why a target is missed, as a sentence; empty if it is met.
 
     Args:
@@ -40,18 +40,18 @@ def target_reason(comparison: Comparison, spread: TargetSpread) -> str:
     return moved
 
 
-def largest_miss(comparisons: Sequence[Comparison]) -> Comparison | None:
+def largest_miss(comparisons: Sequence[TargetCheck]) -> TargetCheck | None:
     """The target that is missed by the largest share of its limit; None if none is."""
     missed = [c for c in comparisons if not c.met and math.isfinite(c.value)]
     return max(missed, key=missed_share, default=None)
 
 
-def num_met(comparisons: Sequence[Comparison]) -> int:
+def num_met(comparisons: Sequence[TargetCheck]) -> int:
     """How many targets are met."""
     return sum(comparison.met for comparison in comparisons)
 
 
-def largest_share(comparisons: Sequence[Comparison]) -> Real:
+def largest_share(comparisons: Sequence[TargetCheck]) -> Real:
     """The largest miss as a share of its limit [-]; 0 if all are met."""
     worst = largest_miss(comparisons)
     return missed_share(worst) if worst is not None else 0.0

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from costeer.base.array import Real
-from costeer.study.reporting.numerals import NOTHING, number
+from costeer.pages.numerals import NOTHING, number
 from costeer.validation.people.findings import (
     RealComparison,
     is_target,

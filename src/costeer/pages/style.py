@@ -16,8 +16,6 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
 
-from costeer.methods.conditions import condition
-
 COLUMN_WIDTH_MM = 88.0
 FULL_WIDTH_MM = 180.0
 """Widths of one and of two columns of a journal page [mm]."""
@@ -39,10 +37,6 @@ STRENGTH_LINES: dict[str, tuple[float, tuple[float, ...]]] = {
 }
 """Offset and dashes: weak is told from strong without colour too."""
 
-_DURATION_SHADES = {
-    "strong": {"rapid": "#00456B", "normal": "#0072B2", "gentle": "#62B0DE"},
-    "weak": {"rapid": "#8C3B00", "normal": "#D55E00", "gentle": "#F4A06A"},
-}
 SIGNAL_COLOURS = {"driver": "#009E73", "guidance": "#CC79A7", "gap": "#1a1a1a"}
 """Two agents at one wheel, distinct from the colours of the conditions."""
 
@@ -154,14 +148,6 @@ def panels(
 def _relative(gap: float, inner: float, number: int) -> float:
     """The gap as a share of the mean panel, which is what the grid wants."""
     return gap * number / (inner - gap * (number - 1))
-
-
-def condition_colour(name: str) -> str:
-    """Return the colour of a condition, the same in every figure."""
-    strength, duration = condition(name).strength, condition(name).duration
-    if not duration:
-        return STRENGTH_COLOURS[strength]
-    return _DURATION_SHADES[strength][duration]
 
 
 def panel_letter(axes: Axes, letter: str) -> None:

@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from benchmarks.real_lane_changes import folds
 from costeer.intention.features import NUM_FEATURES
+from costeer.training.datasets.folds import folds
 from costeer.training.labels import Labels
 from costeer.training.recordings import Recording
 

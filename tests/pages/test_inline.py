@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from costeer.study.reporting.inline import inline_svg
+from costeer.pages.inline import inline_svg
 
 FILE = """<?xml version="1.0"?>
 <!DOCTYPE svg PUBLIC "-//W3C//DTD SVG 1.1//EN" "http://www.w3.org/svg11.dtd">

@@ -6,18 +6,20 @@ Whose report it is decides only the opening: a template that fills the blocks of
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
+from pathlib import Path
 from typing import Any, NamedTuple
 
 from jinja2 import ChoiceLoader, Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 
-from costeer.study.figures.exhibit import Exhibit
-from costeer.study.figures.style import COLUMN_WIDTH_MM, MM_PER_INCH, svg_text
-from costeer.study.reporting.inline import inline_svg
-from costeer.study.reporting.tables import Table, shortened
+from costeer.base.files import write_text
+from costeer.pages.exhibit import Exhibit
+from costeer.pages.inline import inline_svg
+from costeer.pages.style import COLUMN_WIDTH_MM, MM_PER_INCH, svg_text
+from costeer.pages.tables import Table, shortened
 
-_HOME = "costeer.study"
+_HOME = "costeer.pages"
 
 
 class Picture(NamedTuple):
@@ -80,6 +82,25 @@ def picture(exhibit: Exhibit) -> Picture:
     return Picture(words, svg, half=width_mm <= COLUMN_WIDTH_MM + 1.0)
 
 
+def write_figures(
+    folder: Path, pictures: Iterable[Picture], known: Iterable[str] = ()
+) -> None:
+    """Write every figure that was drawn, and remove those that no longer are.
+
+    Args:
+        folder: Made if it is not there.
+        pictures: Drawn or not.
+        known: Figures that an earlier report may have left; every SVG file if empty.
+    """
+    folder.mkdir(exist_ok=True)
+    drawn = {each.exhibit.name: each.svg for each in pictures if each.svg}
+    for name in known or [file.stem for file in folder.glob("*.svg")]:
+        if name not in drawn:
+            (folder / f"{name}.svg").unlink(missing_ok=True)
+    for name, svg in drawn.items():
+        write_text(folder / f"{name}.svg", svg)
+
+
 def render_page(
     template: str,
     sections: Sequence[Section],
@@ -102,7 +123,7 @@ def render_page(
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    css = Markup(home.get_source(environment, "report.css")[0])
+    css = Markup(home.get_source(environment, "page.css")[0])
     page = environment.get_template(template)
     return page.render(css=css, sections=_numbered(sections), **words)
 

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from costeer.training.datasets.resample import (
+from costeer.training.resample import (
     delayed,
     grid,
     held,

@@ -6,7 +6,7 @@ import math
 
 import pytest
 
-from costeer.study.reporting import numerals
+from costeer.pages import numerals
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,77 @@
+"""Files that are there whole or not at all, and folders made for results."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Collection, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+
+@contextmanager
+def replacing(path: Path) -> Iterator[Path]:
+    """Yield a file beside `path` to write; it takes the place of `path` at the end.
+
+    If the writing fails, `path` is what it was. A process that is killed leaves a file
+    whose name begins with that of `path` and ends in `.tmp`.
+    """
+    partial = path.with_name(f"{path.name}.{os.getpid()}.tmp")
+    try:
+        yield partial
+        partial.replace(path)
+    except BaseException:
+        partial.unlink(missing_ok=True)
+        raise
+
+
+def write_text(path: Path, text: str) -> None:
+    """Write a text file, whole or not at all, with the same bytes on every system."""
+    with replacing(path) as partial:
+        partial.write_text(text, encoding="utf-8", newline="\n")
+
+
+def prepare_folder(
+    folder: Path, mark: str, kind: str, left: Collection[str] = ()
+) -> None:
+    """Make a folder for results, and refuse one before minutes of work.
+
+    Args:
+        folder: New, empty, or with earlier results of the kind.
+        mark: Name of the file that only a folder with such results has.
+        kind: Of the results, in words.
+        left: Other names that a process which was killed may have left.
+
+    Raises:
+        ValueError: If it is a file, or holds other things.
+        OSError: If it cannot be written.
+    """
+    if folder.exists() and not folder.is_dir():
+        raise ValueError(f"{folder} is a file; give a new or empty folder")
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        _refuse_foreign(folder, mark, kind, left)
+        probe = folder / f"{mark}.{os.getpid()}.tmp"
+        probe.touch()
+        probe.unlink()
+    except OSError as error:
+        raise OSError(
+            f"cannot write in {folder}: {error.strerror}; choose another folder"
+        ) from error
+
+
+def _refuse_foreign(folder: Path, mark: str, kind: str, left: Collection[str]) -> None:
+    """Refuse to spread results over a folder that holds something else."""
+    if (folder / mark).exists():
+        return
+    foreign = [
+        path.name
+        for path in folder.iterdir()
+        if path.name not in left
+        and not (path.name.startswith(mark) and path.suffix == ".tmp")
+        and not (path.is_dir() and not any(path.iterdir()))
+    ]
+    if foreign:
+        raise ValueError(
+            f"{folder} is not empty and holds no {kind} (it holds {min(foreign)}); "
+            "choose a new or empty folder"
+        )

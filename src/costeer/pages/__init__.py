@@ -1,0 +1,1 @@
+"""What reports share: page frame, tables, figures' look, numbers as text."""
