@@ -9,7 +9,6 @@ from functools import partial
 import numpy as np
 
 from benchmarks.speed.timing import Effort, Outcome, Skipped, figure, seconds_of
-from costeer.intention.wavefront import initial_state
 from costeer.loop.jax_rollout import jax_rollouts
 from costeer.loop.noise import driver_noise
 from costeer.loop.parameters import DT
@@ -17,7 +16,7 @@ from costeer.loop.rollout import rollout
 from costeer.loop.scenario import TrialSetup, loop_parameters
 from costeer.loop.tick import INTENTION_SCRIPTED, Script
 from costeer.loop.trial import (
-    idle_weights,
+    idle_network,
     shipped_network,
     simulate_trial,
     trial_duration,
@@ -84,14 +83,13 @@ def _engine(engine: str, effort: Effort) -> Outcome:
     steps = round(_ENGINE_SECONDS / DT)
     noise = driver_noise(1, 1, STRONG.condition, steps)
     script = Script(INTENTION_SCRIPTED, 3.0, np.array([]))
-    parameters, weights = loop_parameters(STRONG), idle_weights()
+    parameters = loop_parameters(STRONG)
     run = partial(
         rollout,
         IBHS,
         parameters,
         script,
-        weights,
-        initial_state(weights),
+        idle_network(),
         noise,
         engine,
     )

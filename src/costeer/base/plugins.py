@@ -55,7 +55,7 @@ def load_object(place: str, kind: type, usual: str) -> Any:  # Any: of `kind`
 
     Args:
         place: `module:object`, `file.py` or `file.py:object`.
-        kind: Class that it must be of.
+        kind: Class that it must be of; `object` for whatever is there.
         usual: Name of the object in a file, if the place does not tell.
 
     Raises:
@@ -80,6 +80,8 @@ def load_object(place: str, kind: type, usual: str) -> Any:  # Any: of `kind`
 
 def _names(module: ModuleType, kind: type) -> str:
     """What a module has of a kind, for a message."""
+    if kind is object:
+        return ", ".join(name for name in vars(module) if not name.startswith("_"))
     names = [name for name, each in vars(module).items() if isinstance(each, kind)]
     return f"the {kind.__name__} {', '.join(names)}" if names else f"no {kind.__name__}"
 
@@ -91,11 +93,11 @@ def _only_name(module: ModuleType, kind: type, usual: str, place: str) -> str:
         ValueError: If there is none, or several and none has the usual name.
     """
     own = [name for name, each in vars(module).items() if isinstance(each, kind)]
-    if usual in own or len(own) == 1:
+    if usual in own or (len(own) == 1 and kind is not object):
         return usual if usual in own else own[0]
     raise ValueError(
-        f"{place} has {_names(module, kind)}; define one called {usual}, or give "
-        f"{place}:NAME"
+        f"{place} has {_names(module, kind)}; give one of them the name {usual}, or "
+        f"say which: {place}:NAME"
     )
 
 

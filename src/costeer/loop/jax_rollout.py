@@ -83,9 +83,7 @@ def trace(
 
     def advance(state: LoopState[Any], draws: Any) -> tuple[LoopState[Any], Any]:
         drawn = DriverNoise(*draws)
-        moved, row = tick(
-            fixed.rule, parameters, state, script, no_network, no_network, drawn
-        )
+        moved, row = tick(fixed.rule, parameters, state, script, no_network, drawn)
         numbers = [jax.numpy.asarray(n, float) for n in jax.tree_util.tree_leaves(row)]
         new_state = jax.tree_util.tree_map(_as_before, state, moved)
         position = new_state.world.vehicle.longitudinal_position

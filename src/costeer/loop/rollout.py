@@ -6,19 +6,19 @@ plain Python, and traced by JAX. Each method has machine code of its own.
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 from numba.core import errors
 from numpy.typing import NDArray
 
 from costeer.base.entry import entry_for
-from costeer.base.packing import packed, unpack
-from costeer.intention.wavefront import WavefrontState, WavefrontWeights
+from costeer.base.packing import pack, packed, unpack
 from costeer.loop.jax_rollout import jax_rollout
 from costeer.loop.parameters import LoopParameters
 from costeer.loop.rows import ROW_COLUMNS
-from costeer.loop.tick import Script, run
+from costeer.loop.step import initial_state
+from costeer.loop.tick import Network, Script, run
 from costeer.methods.interface import (
     Method,
     P,
@@ -32,35 +32,101 @@ from costeer.methods.interface import (
 Rows = NDArray[np.float64]
 
 
+class Advance(Protocol):
+    """A trial that has begun."""
+
+    def __call__(
+        self, script: Script, noise: Rows, rows: Rows, keep: bool = True
+    ) -> int:
+        """Run on with a script and noise; return how many rows were filled.
+
+        What is not kept is forgotten: the next call begins where this one did.
+        """
+
+
 def _compiled_trial(method: Method[P, S]) -> Any:  # Any: a compiled function of Numba
     """The compiled trial of a method; its machine code lies in the method's folder."""
-    initial_state, step = rule_of(method)
+    begin, step = rule_of(method)
     like = LoopParameters(controller=usual_parameters(method))
+    like_state = initial_state(rule_of(method), like)
 
     def run_packed(
         parameters: Rows,
+        state: Rows,
         script: Script,
-        weights: WavefrontWeights,
-        memory: WavefrontState,
+        network: Network,
         noise: Rows,
         rows: Rows,
     ) -> int:
         # A tuple of functions is made in compiled code: Numba cannot take one.
-        rule = Rule(initial_state, step)
-        given = unpack(like, parameters)
-        return run(rule, given, script, weights, memory, noise, rows)
+        rule = Rule(begin, step)
+        given, start = unpack(like, parameters), unpack(like_state, state)
+        end, count = run(rule, given, start, script, network, noise, rows)
+        pack(state, end)
+        return count
 
-    return entry_for((initial_state, step), run_packed)
+    return entry_for((begin, step), run_packed)
+
+
+def begun(
+    method: Method[P, S],
+    parameters: LoopParameters[P],
+    network: Network,
+    engine: str = "numba",
+) -> Advance:
+    """A trial at its start, and the function that runs it on.
+
+    Args:
+        method: That assists.
+        parameters: Of the trial.
+        network: Of the intention, changed in place.
+        engine: "numba" or "python".
+
+    Raises:
+        ValueError: If the engine is not known; when it is called, also if the method
+            cannot be compiled.
+    """
+    state = initial_state(rule_of(method), parameters)
+    if engine == "python":
+        return _in_python(method, parameters, state, network)
+    if engine != "numba":
+        raise ValueError(f"engine '{engine}' is not known; choose numba, python or jax")
+    numbers, memory = packed(parameters), packed(state)
+
+    def advance(script: Script, noise: Rows, rows: Rows, keep: bool = True) -> int:
+        now = memory if keep else memory.copy()
+        try:
+            trial = compiled_once(_compiled_trial, method)
+            count: int = trial(numbers, now, script, network, noise, rows)
+        except errors.NumbaError as error:
+            raise ValueError(cannot_compile(method, error)) from error
+        return count
+
+    return advance
+
+
+def _in_python(
+    method: Method[P, S], parameters: LoopParameters[P], state: Any, network: Network
+) -> Advance:
+    """The trial as plain Python."""
+    rule = rule_of(method)
+
+    def advance(script: Script, noise: Rows, rows: Rows, keep: bool = True) -> int:
+        nonlocal state
+        end, count = run(rule, parameters, state, script, network, noise, rows)
+        state = end if keep else state
+        return count
+
+    return advance
 
 
 def rollout(
     method: Method[P, S],
     parameters: LoopParameters[P],
     script: Script,
-    weights: WavefrontWeights,
-    memory: WavefrontState,
+    network: Network,
     noise: Rows,
-    engine: str,
+    engine: str = "numba",
 ) -> Rows:
     """Run one trial.
 
@@ -68,8 +134,7 @@ def rollout(
         method: That assists.
         parameters: Of the trial.
         script: Where the crossing probability comes from.
-        weights: Of the network.
-        memory: Of the network, changed in place.
+        network: Of the intention, changed in place.
         noise: Random numbers, shape `(time, draw)`.
         engine: "numba", "python" or "jax"; JAX runs no network.
 
@@ -84,29 +149,8 @@ def rollout(
     if engine == "jax":
         return jax_rollout(method, parameters, script, noise)
     rows = np.empty((len(noise), len(ROW_COLUMNS)))
-    if engine == "numba":
-        count = _run_compiled(
-            method, packed(parameters), script, weights, memory, noise, rows
-        )
-    elif engine == "python":
-        rule = rule_of(method)
-        count = run(rule, parameters, script, weights, memory, noise, rows)
-    else:
-        raise ValueError(f"engine '{engine}' is not known; choose numba, python or jax")
+    count = begun(method, parameters, network, engine)(script, noise, rows)
     return rows[:count]
-
-
-def _run_compiled(method: Method[P, S], *arguments: Any) -> int:
-    """Run the compiled trial.
-
-    Raises:
-        ValueError: If Numba cannot compile the method.
-    """
-    try:
-        count: int = compiled_once(_compiled_trial, method)(*arguments)
-    except errors.NumbaError as error:
-        raise ValueError(cannot_compile(method, error)) from error
-    return count
 
 
 def cannot_compile(method: Method[P, S], error: Exception) -> str:

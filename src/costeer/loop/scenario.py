@@ -8,6 +8,9 @@ from typing import Any, NamedTuple
 from costeer.base.array import Real
 from costeer.drivers.driver import DriverParameters
 from costeer.drivers.population import hands_off, participant_driver
+from costeer.intention.predictors.chosen import Judge
+from costeer.intention.predictors.interface import Predictor
+from costeer.intention.predictors.registry import OURS
 from costeer.loop.overrides import built
 from costeer.loop.parameters import LoopParameters, StartParameters
 from costeer.loop.tick import (
@@ -60,6 +63,10 @@ class TrialSetup(NamedTuple):
         driver: "virtual", "hands-off", or the parameters of a virtual driver.
         intention: "network", "scripted" (a perfect predictor of the driver's own
             plan) or "off".
+        predictor: What predicts a crossing where the intention is "network": the
+            network itself ("gru"), another predictor by name or place, or a function
+            of windows (`intention.predictors.chosen`).
+        weights: File of the predictor's numbers; the shipped ones if None.
         trigger_times: When the system starts a lane change whatever the driver wants
             [s].
         events: Whether leaders appear.
@@ -86,6 +93,8 @@ class TrialSetup(NamedTuple):
     car: str | CarParameters = "default"
     driver: str | DriverParameters = "virtual"
     intention: str = "network"
+    predictor: str | Predictor | Judge = OURS
+    weights: str | None = None
     trigger_times: tuple[Real, ...] = ()
     events: bool = True
     initial_offset: Real = 0.0

@@ -24,7 +24,6 @@ from costeer.loop.parameters import DT, LoopParameters
 from costeer.loop.rows import Row, row
 from costeer.loop.step import (
     LoopState,
-    initial_state,
     own_duration,
     planned_to_cross,
     sense,
@@ -38,6 +37,7 @@ S = TypeVar("S")
 INTENTION_OFF = 0
 INTENTION_SCRIPTED = 1
 INTENTION_NETWORK = 2
+INTENTION_GIVEN = 3
 
 REQUEST_DURATION = 0.1
 """How long a requested lane change stays requested [s]."""
@@ -52,15 +52,30 @@ class Script(NamedTuple):
     """Where the crossing probability comes from.
 
     Attributes:
-        intention: `INTENTION_OFF`, `INTENTION_SCRIPTED` or `INTENTION_NETWORK`.
+        intention: `INTENTION_OFF`, `INTENTION_SCRIPTED`, `INTENTION_NETWORK`, or
+            `INTENTION_GIVEN` by a predictor outside the loop.
         horizon: A scripted verdict is positive when the driver's own plan crosses the
             line within this time [s].
         trigger_times: When a lane change is requested, shape `(request,)` [s].
+        probability: The verdict that is given, NaN for none [-].
     """
 
     intention: int
     horizon: Real
     trigger_times: NDArray[np.float64]
+    probability: Real = math.nan
+
+
+class Network(NamedTuple):
+    """The intention network of a trial.
+
+    Attributes:
+        weights: As the kernel takes them.
+        memory: Its windows, changed in place.
+    """
+
+    weights: WavefrontWeights
+    memory: WavefrontState
 
 
 @compiled
@@ -113,8 +128,7 @@ def tick(
     parameters: LoopParameters[Any],
     state: LoopState[S],
     script: Script,
-    weights: WavefrontWeights,
-    memory: WavefrontState,
+    network: Network,
     noise: DriverNoise,
 ) -> tuple[LoopState[S], Row]:
     """One control step with its sample, its verdict and its row."""
@@ -123,7 +137,11 @@ def tick(
     if script.intention == INTENTION_SCRIPTED:
         probability = scripted_probability(parameters, state, script.horizon)
     if script.intention == INTENTION_NETWORK:
-        probability = advance(weights, memory, intention_sample(measurement))
+        probability = advance(
+            network.weights, network.memory, intention_sample(measurement)
+        )
+    if script.intention == INTENTION_GIVEN:
+        probability = script.probability
     request = Request(
         crossing_probability=probability,
         requested=requested(script.trigger_times, state.control.time),
@@ -137,28 +155,27 @@ def tick(
 def run(
     rule: Rule[Any, S],
     parameters: LoopParameters[Any],
+    state: LoopState[S],
     script: Script,
-    weights: WavefrontWeights,
-    memory: WavefrontState,
+    network: Network,
     noise: NDArray[np.float64],
     rows: NDArray[np.float64],
-) -> int:
+) -> tuple[LoopState[S], int]:
     """Fill `rows` until the road or the noise ends; return how many were filled.
 
     Args:
         rule: The method's functions.
         parameters: Of the trial.
+        state: At the beginning.
         script: Where the crossing probability comes from.
-        weights: Of the network.
-        memory: Of the network, changed in place.
+        network: Of the intention.
         noise: Random numbers, shape `(time, draw)`.
         rows: Filled in the order of `ROW_COLUMNS`, shape `(time, column)`.
     """
-    state = initial_state(rule, parameters)
     for k in range(len(noise)):
         drawn = unpack(_NOISE, noise[k])
-        state, filled = tick(rule, parameters, state, script, weights, memory, drawn)
+        state, filled = tick(rule, parameters, state, script, network, drawn)
         pack(rows[k], filled)
         if state.world.vehicle.longitudinal_position >= parameters.road.length:
-            return k + 1
-    return len(noise)
+            return state, k + 1
+    return state, len(noise)

@@ -16,6 +16,8 @@ from costeer.base.described import described
 from costeer.drivers.population import POPULATION_VERSION
 from costeer.intention.features import NUM_FEATURES, NUM_INPUTS, NUM_SCALED
 from costeer.intention.gru import NetworkWeights
+from costeer.intention.predictors.chosen import ChosenPredictor, chosen_predictor
+from costeer.intention.predictors.interface import Predictor
 from costeer.intention.wavefront import (
     WavefrontWeights,
     wavefront_weights,
@@ -23,8 +25,9 @@ from costeer.intention.wavefront import (
 from costeer.intention.wavefront import initial_state as network_memory
 from costeer.intention.weights import IntentionNetwork, load_weights
 from costeer.loop.noise import driver_noise
+from costeer.loop.outside import Verdicts, outside_rollout
 from costeer.loop.parameters import DT, LoopParameters
-from costeer.loop.rollout import rollout
+from costeer.loop.rollout import begun, rollout
 from costeer.loop.rows import ROW_COLUMNS
 from costeer.loop.scenario import (
     INTENTIONS,
@@ -34,7 +37,7 @@ from costeer.loop.scenario import (
     trial_condition,
     trial_method,
 )
-from costeer.loop.tick import Script
+from costeer.loop.tick import Network, Script
 from costeer.methods.interface import Method, method_sources
 from costeer.records.columns import COLUMNS, MODES, Column, TrialRecord
 
@@ -64,12 +67,6 @@ def shipped_network() -> IntentionNetwork:
 
 
 @cache
-def _shipped_weights() -> WavefrontWeights:
-    """The shipped network as the kernel takes it."""
-    return wavefront_weights(shipped_network().weights)
-
-
-@cache
 def idle_weights() -> WavefrontWeights:
     """Two units of zeros, for trials that ask no network."""
     units = 2
@@ -88,39 +85,57 @@ def idle_weights() -> WavefrontWeights:
     )
 
 
-def _predictor(
-    setup: TrialSetup, network: IntentionNetwork | None
-) -> tuple[WavefrontWeights, str | None]:
-    """Packed weights of the network that a trial asks, and its hash."""
+@cache
+def _kernel_weights(digest: str, wanted: str, weights: str | None) -> WavefrontWeights:
+    """Numbers of a network as the kernel takes them, made once for each `digest`."""
+    chosen = chosen_predictor(wanted, weights).weights
+    if chosen is None:
+        raise ValueError(f"predictor {wanted} is no network")
+    return wavefront_weights(chosen)
+
+
+def trial_predictor(setup: TrialSetup) -> ChosenPredictor | None:
+    """The predictor that a trial asks; None for none.
+
+    Raises:
+        ValueError: If there is no such predictor, or its file does not fit.
+        OSError: If its file cannot be read.
+    """
     if setup.intention != "network":
-        return idle_weights(), None
-    if network is not None:
-        return wavefront_weights(network.weights), network.hash
-    return _shipped_weights(), shipped_network().hash
+        return None
+    return chosen_predictor(setup.predictor, setup.weights)
 
 
-def simulate_trial(
-    setup: TrialSetup,
-    engine: str = "numba",
-    network: IntentionNetwork | None = None,
-) -> TrialRecord:
+def _network(setup: TrialSetup, predictor: ChosenPredictor | None) -> Network:
+    """The network of a trial, or an idle one."""
+    packed = idle_weights()
+    if predictor is not None and predictor.weights is not None:
+        packed = _kernel_weights(predictor.hash, str(setup.predictor), setup.weights)
+    return Network(packed, network_memory(packed))
+
+
+def idle_network() -> Network:
+    """For trials that ask no network."""
+    return Network(idle_weights(), network_memory(idle_weights()))
+
+
+def simulate_trial(setup: TrialSetup, engine: str = "numba") -> TrialRecord:
     """Run one trial.
 
     Args:
         setup: What the trial is.
         engine: "numba", "python" or "jax"; all give the same numbers. JAX runs no
             network.
-        network: Of the intention; the shipped one if None.
 
     Returns:
         Its record; the same setup and version give the same record.
 
     Raises:
         ValueError: If the setup cannot be run or the engine is not known.
+        OSError: If a file of the predictor's numbers cannot be read.
         ModuleNotFoundError: If the engine is not installed.
     """
-    parameters = loop_parameters(setup)
-    packed, network_hash = _predictor(setup, network)
+    parameters, predictor = loop_parameters(setup), trial_predictor(setup)
     longest = setup.length / (SLOWEST_SHARE * setup.speed)
     noise = driver_noise(
         setup.seed, setup.participant, setup.condition, int(np.ceil(longest / DT))
@@ -130,11 +145,15 @@ def simulate_trial(
         horizon=setup.prediction_horizon,
         trigger_times=np.array(sorted(setup.trigger_times), dtype=np.float64),
     )
-    memory = network_memory(packed)
-    method = trial_method(setup)
-    rows = rollout(method, parameters, script, packed, memory, noise, engine)
+    method, network = trial_method(setup), _network(setup, predictor)
+    if predictor is not None and predictor.judge is not None and engine != "jax":
+        advance = begun(method, parameters, network, engine)
+        verdicts = Verdicts(predictor.judge, predictor.name)
+        rows = outside_rollout(advance, script, verdicts, noise, parameters.road)
+    else:
+        rows = rollout(method, parameters, script, network, noise, engine)
     return TrialRecord(
-        metadata=trial_metadata(setup, parameters, network_hash),
+        metadata=trial_metadata(setup, parameters, predictor),
         columns=record_columns(rows, is_assisted(setup)),
     )
 
@@ -172,7 +191,9 @@ def _as_kind(column: Column, values: NDArray[np.float64]) -> NDArray[Any]:
 
 
 def trial_metadata(
-    setup: TrialSetup, parameters: LoopParameters[Any], network_hash: str | None
+    setup: TrialSetup,
+    parameters: LoopParameters[Any],
+    predictor: ChosenPredictor | None,
 ) -> dict[str, object]:
     """The record's description of the trial, spec section 6."""
     configuration = json.loads(json.dumps(_as_dict(parameters)))
@@ -192,7 +213,8 @@ def trial_metadata(
         "car": setup.car if isinstance(setup.car, str) else "own",
         "speed": setup.speed,
         "driver": _driver_text(setup),
-        "intention_model_hash": network_hash,
+        "predictor": None if predictor is None else predictor.name,
+        "intention_model_hash": None if predictor is None else predictor.hash,
         **_thresholds(parameters),
         "configuration": configuration,
         "configuration_hash": hashlib.sha256(text.encode()).hexdigest(),
@@ -240,8 +262,10 @@ def git_revision() -> str | None:
 
 def _as_dict(value: Any) -> Any:  # Any: a tree of numbers, names and tuples
     """Nested named tuples as nested dictionaries; NaN, which JSON has not, as null."""
-    if isinstance(value, Method):
+    if isinstance(value, Method | Predictor):
         return value.name
+    if callable(value):
+        return getattr(value, "__name__", type(value).__name__)
     if isinstance(value, np.ndarray):
         return value.tolist()
     if isinstance(value, tuple) and hasattr(value, "_fields"):

@@ -129,7 +129,10 @@ class Drive:
         if self.setup.intention == "network":
             absent = ("head_yaw",) if self.setup.head is None else ()
             road = drive_parameters(self.setup).road
-            network = self._spawned(run_network, memory, road, absent)
+            trial = self.setup.trial
+            network = self._spawned(
+                run_network, memory, road, absent, trial.predictor, trial.weights
+            )
             self._helpers["intention network"] = network
         if self.setup.head is not None:
             sink = MailboxSink(memory)

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from costeer.base.described import described
 from costeer.loop.parameters import LoopParameters
 from costeer.loop.scenario import is_assisted
-from costeer.loop.trial import shipped_network, trial_metadata
+from costeer.loop.trial import trial_metadata, trial_predictor
 from costeer.runtime.frame import PLACE
 from costeer.runtime.markers import Marker
 from costeer.runtime.setup import DriveSetup, drive_parameters
@@ -33,10 +33,13 @@ def drive_metadata(
         setup: Of the drive, with condition and method as they are now.
         parameters: As they are now; those of the setup if None.
     """
-    network = shipped_network().hash if setup.intention == "network" else None
+    network = setup.trial._replace(intention="network")
+    asks = setup.intention == "network"
     used = drive_parameters(setup) if parameters is None else parameters
     known = {each.name: each.value for each in described(used)}
-    about = trial_metadata(setup.trial, used, network)
+    about = trial_metadata(
+        setup.trial, used, trial_predictor(network) if asks else None
+    )
     if is_assisted(setup.trial):
         for name, place in TUNED_BY_HAND.items():
             about[name] = known.get(place, about[name])

@@ -14,6 +14,7 @@ from costeer.devices.wheels.interface import WheelDescription
 from costeer.drivers.driver import DriverParameters
 from costeer.loop.parameters import DT, LoopParameters
 from costeer.loop.scenario import TrialSetup, loop_parameters, trial_method
+from costeer.loop.trial import trial_predictor
 from costeer.methods.conditions import condition as condition_named
 from costeer.methods.ibhs import IBHS
 from costeer.methods.manual import MANUAL
@@ -63,6 +64,12 @@ def check_drive(setup: DriveSetup) -> None:
     """
     loop_parameters(setup.trial)
     offered_methods(setup)
+    if not isinstance(setup.trial.predictor, str):
+        raise ValueError(
+            "a drive runs in processes of its own; give its predictor by its name, as "
+            "module:object or as a file"
+        )
+    trial_predictor(setup.trial._replace(intention="network"))
     if setup.intention not in INTENTION_SOURCES:
         known = ", ".join(INTENTION_SOURCES)
         raise ValueError(

@@ -10,22 +10,18 @@ from __future__ import annotations
 import math
 import signal
 import time
+from collections.abc import Callable
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
 
-from costeer.intention.features import IntentionSample, facing
-from costeer.intention.wavefront import (
-    WavefrontState,
-    WavefrontWeights,
-    advance,
-    initial_state,
-    wavefront_weights,
-)
+from costeer.intention.features import NUM_FEATURES, IntentionSample
+from costeer.intention.predictors.chosen import ChosenPredictor, chosen_predictor
+from costeer.intention.wavefront import advance, initial_state, wavefront_weights
+from costeer.loop.outside import Verdicts, sample_of
 from costeer.loop.parameters import DT
-from costeer.loop.trial import shipped_network
 from costeer.plant.parameters import RoadParameters
-from costeer.plant.road import adjacent_side
 from costeer.runtime.frame import PLACE
 from costeer.runtime.patience import SERVER_PATIENCE
 from costeer.runtime.shared import close_shared, open_shared
@@ -34,50 +30,27 @@ from costeer.runtime.states import RunState
 INTERVAL = 0.002
 """Between two looks at the ring [s]."""
 
-_SIGNALS = tuple(PLACE[name] for name in IntentionSample._fields)
-_VALID = PLACE["head_yaw_valid"]
-_HEAD = IntentionSample._fields.index("head_yaw")
-
-
-def sample_of(frame: NDArray[np.float64], road: RoadParameters) -> IntentionSample:
-    """The network's sample of a frame, mirrored to the adjacent lane; lost head NaN.
-
-    Args:
-        frame: Columns as `FRAME_COLUMNS`.
-        road: Tells on which side the adjacent lane is.
-    """
-    values = [float(frame[place]) for place in _SIGNALS]
-    if frame[_VALID] < 0.5:
-        values[_HEAD] = math.nan
-    side = adjacent_side(road, float(frame[PLACE["lane"]]))
-    return facing(IntentionSample(*values), side)
-
 
 class Reader:
-    """The network over the frames of one drive.
+    """The predictor over the frames of one drive.
 
     Args:
         road: Of the drive.
         absent: Signals that this drive does not have, as `head_yaw`.
+        predictor: Network, or function of windows.
     """
 
-    def __init__(self, road: RoadParameters, absent: tuple[str, ...]) -> None:
+    def __init__(
+        self, road: RoadParameters, absent: tuple[str, ...], predictor: ChosenPredictor
+    ) -> None:
         self._road = road
-        self._absent = absent
-        self._weights: WavefrontWeights = wavefront_weights(shipped_network().weights)
-        self._memory = self._new_memory()
+        self._make = _asked(predictor, absent)
+        self._after = self._make()
         self._time = -1.0
-
-    def _new_memory(self) -> WavefrontState:
-        return initial_state(self._weights, self._absent)
 
     def warm_up(self) -> None:
         """Compile, or load what was compiled, before the first frame."""
-        advance(
-            self._weights,
-            self._new_memory(),
-            IntentionSample(*([math.nan] * len(_SIGNALS))),
-        )
+        self._make()(IntentionSample(*([math.nan] * NUM_FEATURES)))
 
     def read(self, frame: NDArray[np.float64]) -> float:
         """Verdict after one more frame; NaN before the window is full [-].
@@ -86,16 +59,37 @@ class Reader:
         """
         now = float(frame[PLACE["time"]])
         if not 0.0 < now - self._time < 1.5 * DT:
-            self._memory = self._new_memory()
+            self._after = self._make()
         self._time = now
-        return advance(self._weights, self._memory, sample_of(frame, self._road))
+        return self._after(sample_of(frame, self._road))
 
 
-def run_network(memory: str, road: RoadParameters, absent: tuple[str, ...]) -> None:
+Ask = Callable[[IntentionSample], float]
+"""Verdict after one more sample."""
+
+
+def _asked(predictor: ChosenPredictor, absent: tuple[str, ...]) -> Callable[[], Ask]:
+    """Makes what is asked sample by sample, its window empty."""
+    judge, numbers = predictor.judge, predictor.weights
+    if numbers is None:
+        if judge is None:
+            raise ValueError(f"predictor {predictor.name} predicts nothing")
+        return lambda: Verdicts(judge, predictor.name).after
+    weights = wavefront_weights(numbers)
+    return lambda: partial(advance, weights, initial_state(weights, absent))
+
+
+def run_network(
+    memory: str,
+    road: RoadParameters,
+    absent: tuple[str, ...],
+    predictor: str,
+    weights: str | None,
+) -> None:
     """Give verdicts until the server is gone: target of a spawned process."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     shared = open_shared(memory)
-    reader = Reader(road, absent)
+    reader = Reader(road, absent, chosen_predictor(predictor, weights))
     reader.warm_up()
     next_frame = shared.frames.written
     shared.mailbox.put(reading=1.0)

@@ -23,13 +23,12 @@ from numpy.typing import NDArray
 from costeer.base.array import Real
 from costeer.drivers.driver import DriverParameters
 from costeer.drivers.population import participant_driver
-from costeer.intention.wavefront import initial_state as network_memory
 from costeer.loop.parameters import DT, LoopParameters
 from costeer.loop.rollout import rollout
 from costeer.loop.rows import ROW_COLUMNS
 from costeer.loop.scenario import TrialSetup, loop_parameters, trial_car
 from costeer.loop.tick import INTENTION_OFF, PREDICTION_HORIZON, Script
-from costeer.loop.trial import idle_weights, simulate_trial
+from costeer.loop.trial import idle_network, simulate_trial
 from costeer.methods.manual import MANUAL
 from costeer.plant.parameters import CARS, CarParameters, RoadParameters
 from costeer.validation.driver_loop import (
@@ -143,8 +142,7 @@ def offset_run(parameters: LoopParameters[Any], offset: Real = OFFSET) -> Signal
         MANUAL,
         parameters._replace(start=start),
         _no_intention(),
-        idle_weights(),
-        network_memory(idle_weights()),
+        idle_network(),
         quiet(round(_RUN / DT)),
         "numba",
     )

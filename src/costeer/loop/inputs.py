@@ -1,0 +1,151 @@
+"""Cars, drivers and parameters that come from files of a user.
+
+All are YAML: names and numbers, in SI units. A car names what differs from the default
+car, a driver what differs from the usual one, a parameter file any parameter by its
+dotted name or nested by its parts.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any, TypeVar
+
+import yaml
+
+from costeer.base.array import Real
+from costeer.base.described import described, with_values
+from costeer.base.files import write_text
+from costeer.drivers.driver import DriverParameters
+from costeer.plant.parameters import CARS, CarParameters
+
+Record = TypeVar("Record")
+
+ABOUT = "about"
+"""Key of a file under which anything may stand that is no parameter."""
+
+_MOST = 1_000_000
+"""Longest file that is read [bytes]."""
+
+
+def read_values(path: Path) -> dict[str, Real]:
+    """Numbers of a YAML file by dotted name.
+
+    Raises:
+        ValueError: If it is no YAML mapping of numbers.
+        OSError: If it cannot be read.
+    """
+    if path.stat().st_size > _MOST:
+        raise ValueError(f"{path} is larger than 1 MB; give a file of parameters")
+    try:
+        content = yaml.safe_load(path.read_text(encoding="utf-8"))
+    except (yaml.YAMLError, UnicodeDecodeError, RecursionError) as error:
+        first = str(error).partition("\n")[0]
+        raise ValueError(f"{path} is not YAML: {first}") from error
+    if not isinstance(content, dict):
+        raise ValueError(f"{path} is no list of names and numbers, as 'mass: 1500'")
+    content.pop(ABOUT, None)
+    values: dict[str, Real] = {}
+    _flatten(content, "", values, path)
+    return values
+
+
+def _flatten(
+    content: Mapping[Any, Any], prefix: str, values: dict[str, Real], path: Path
+) -> None:
+    """Numbers of nested mappings by dotted name.
+
+    Raises:
+        ValueError: If a value is no number.
+    """
+    for key, value in content.items():
+        name = f"{prefix}{key}"
+        if isinstance(value, Mapping) and name.count(".") < 8:
+            _flatten(value, f"{name}.", values, path)
+        elif isinstance(value, int | float):
+            values[name] = float(value)
+        else:
+            raise ValueError(f"{path}: {name} is {value!r}; give a number")
+
+
+def read_car(path: Path) -> CarParameters:
+    """A car of a file: what it does not name is as in the default car.
+
+    Raises:
+        ValueError: If a name is not known or a value is out of range.
+        OSError: If it cannot be read.
+    """
+    return _filled(CarParameters(), path)
+
+
+def read_driver(path: Path) -> DriverParameters:
+    """A driver of a file, as `costeer drivers --fit FILE --out` writes it.
+
+    Raises:
+        ValueError: If a name is not known or a value is out of range.
+        OSError: If it cannot be read.
+    """
+    return _filled(DriverParameters(), path)
+
+
+def _filled(usual: Record, path: Path) -> Record:
+    values = read_values(path)
+    try:
+        return with_values(usual, values)
+    except ValueError as error:
+        raise ValueError(f"{path}: {error}") from error
+
+
+def write_driver(
+    path: Path, driver: DriverParameters, about: Mapping[str, object]
+) -> None:
+    """Write a driver with every parameter, so that it stays what it was.
+
+    Args:
+        path: File to write or replace.
+        driver: All of its parameters are written.
+        about: Where it comes from.
+    """
+    content = {ABOUT: dict(about)} | {d.name: d.value for d in described(driver)}
+    write_text(path, yaml.safe_dump(content, sort_keys=False, allow_unicode=True))
+
+
+def parse_assignments(words: Sequence[str]) -> dict[str, Real]:
+    """Parameters from words as `guidance.lateral_error_gain=3`.
+
+    Raises:
+        ValueError: If a word is no name with a number, or a name stands twice.
+    """
+    values: dict[str, Real] = {}
+    for word in words:
+        name, equals, text = word.partition("=")
+        try:
+            value = float(text)
+        except ValueError:
+            equals = ""
+        if not (equals and name.strip()):
+            raise ValueError(
+                f"'{word}' sets nothing; give NAME=NUMBER, as "
+                "guidance.lateral_error_gain=3"
+            )
+        if name.strip() in values:
+            raise ValueError(f"{name.strip()} is set twice; set it once")
+        values[name.strip()] = value
+    return values
+
+
+def car_of(text: str) -> str | CarParameters:
+    """A car by its name, or of a YAML file.
+
+    Raises:
+        ValueError: If it is neither.
+        OSError: If the file cannot be read.
+    """
+    if text in CARS:
+        return text
+    if text.endswith((".yaml", ".yml")):
+        return read_car(Path(text))
+    raise ValueError(
+        f"car '{text}' is not known; choose one of {', '.join(CARS)}, or give a file "
+        "NAME.yaml"
+    )

@@ -1,0 +1,130 @@
+"""A trial whose predictor is called from Python, 60 times a second.
+
+Each step is run twice: once on a copy, for its measurement, and again with the verdict
+that the predictor gives on it. So a predictor may be anything that takes a window.
+"""
+
+from __future__ import annotations
+
+import math
+from collections import deque
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from costeer.intention.features import (
+    FEATURES,
+    WINDOW_LENGTH,
+    IntentionSample,
+    facing,
+    valid_samples,
+)
+from costeer.intention.predictors.chosen import Judge
+from costeer.loop.rollout import Advance
+from costeer.loop.rows import ROW_COLUMNS
+from costeer.loop.tick import INTENTION_GIVEN, Script
+from costeer.plant.parameters import RoadParameters
+from costeer.plant.road import adjacent_side
+
+Rows = NDArray[np.float64]
+
+_SIGNALS = [ROW_COLUMNS.index(name) for name in FEATURES]
+_HEAD = FEATURES.index("head_yaw")
+_SEEN = ROW_COLUMNS.index("head_yaw_valid")
+_LANE = ROW_COLUMNS.index("lane")
+_PLACE = ROW_COLUMNS.index("longitudinal_position")
+
+
+def sample_of(row: Rows, road: RoadParameters) -> IntentionSample:
+    """The predictor's sample of a row, facing right; a lost head is NaN.
+
+    Args:
+        row: In the order of `ROW_COLUMNS`; more may follow.
+        road: Tells on which side the adjacent lane is.
+    """
+    values = row[_SIGNALS].tolist()
+    if row[_SEEN] < 0.5:
+        values[_HEAD] = math.nan
+    return facing(IntentionSample(*values), adjacent_side(road, float(row[_LANE])))
+
+
+class Verdicts:
+    """A predictor over the samples of a drive.
+
+    Args:
+        judge: Called with each full window.
+        name: Of the predictor, for messages.
+    """
+
+    def __init__(self, judge: Judge, name: str) -> None:
+        self._judge, self._name = judge, name
+        self._window: deque[IntentionSample] = deque(maxlen=WINDOW_LENGTH)
+
+    def forget(self) -> None:
+        """Begin a new window."""
+        self._window.clear()
+
+    def after(self, sample: IntentionSample) -> float:
+        """Verdict on the window that ends with a sample; NaN until it is full [-].
+
+        Raises:
+            ValueError: If the predictor gives no probability, or breaks.
+        """
+        self._window.append(sample)
+        if len(self._window) < WINDOW_LENGTH:
+            return math.nan
+        window = np.array(self._window, dtype=np.float64)
+        if not valid_samples(window).all():
+            return math.nan
+        return self._probability(window)
+
+    def _probability(self, window: Rows) -> float:
+        try:
+            said: Any = self._judge(window)  # Any: of whoever wrote it
+            probability = float(said)
+        except Exception as error:
+            raise ValueError(
+                f"predictor {self._name} broke: {type(error).__name__}: {error}; it is "
+                f"given a window of shape {window.shape} and returns one probability"
+            ) from error
+        if not (math.isnan(probability) or 0.0 <= probability <= 1.0):
+            raise ValueError(
+                f"predictor {self._name} says {probability:g}; a probability lies "
+                "between 0 and 1, NaN is no verdict"
+            )
+        return probability
+
+
+def outside_rollout(
+    advance: Advance,
+    script: Script,
+    verdicts: Verdicts,
+    noise: Rows,
+    road: RoadParameters,
+) -> Rows:
+    """Run a trial step by step, asking a predictor at each.
+
+    Args:
+        advance: Of the trial at its start.
+        script: Requests from outside; its intention is not looked at.
+        verdicts: Of the predictor.
+        noise: Random numbers, shape `(time, draw)`.
+        road: Its length ends the trial.
+
+    Returns:
+        Rows in the order of `ROW_COLUMNS`, shape `(time, column)`.
+
+    Raises:
+        ValueError: If the predictor gives no probability.
+    """
+    rows = np.empty((len(noise), len(ROW_COLUMNS)))
+    asked = script._replace(intention=INTENTION_GIVEN)
+    for k in range(len(noise)):
+        now = slice(k, k + 1)
+        advance(asked, noise[now], rows[now], keep=False)
+        probability = verdicts.after(sample_of(rows[k], road))
+        advance(asked._replace(probability=probability), noise[now], rows[now])
+        if rows[k, _PLACE] >= road.length:
+            return rows[: k + 1]
+    return rows
