@@ -14,10 +14,11 @@ from costeer.training.ablation import ablations, variant_of
 from costeer.training.bootstrap import AT_RATE
 from costeer.training.comparison import (
     Comparison,
-    compare,
+    compare_verdicts,
     comparison_facts,
+    contender,
 )
-from costeer.training.evaluate import DEFAULTS
+from costeer.training.evaluate import DEFAULTS, EvaluationParameters
 from costeer.training.recordings import Recording, lacking, recording
 from tests.training.synthetic import columns, drives
 
@@ -62,8 +63,18 @@ PERFECT, COIN = made("perfect", oracle), made("coin", coin)
 NEAR = made("near", nearness, ("distance_to_adjacent_lane",))
 
 
+def compare(
+    predictors: list[Predictor],
+    recordings: list[Recording],
+    reference: str,
+    parameters: EvaluationParameters,
+) -> Comparison:
+    rows = [contender(predictor, recordings) for predictor in predictors]
+    return compare_verdicts(rows, recordings, reference, parameters)
+
+
 def compared(*predictors: Predictor, reference: str) -> Comparison:
-    return compare(predictors, RECORDINGS, reference, PARAMETERS)
+    return compare([*predictors], RECORDINGS, reference, PARAMETERS)
 
 
 BOTH = compared(PERFECT, COIN, NEAR, reference="coin")

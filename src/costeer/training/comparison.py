@@ -114,27 +114,6 @@ class Comparison(NamedTuple):
     excluded: list[Excluded]
 
 
-def compare(
-    predictors: Sequence[Predictor],
-    recordings: Sequence[Recording],
-    reference: str,
-    parameters: EvaluationParameters = DEFAULTS,
-) -> Comparison:
-    """Judge predictors on the same recordings and samples.
-
-    Args:
-        predictors: To judge.
-        recordings: Of drivers who trained none of them.
-        reference: Name of the one that the others are held against.
-        parameters: How it is judged.
-
-    Raises:
-        ValueError: If none can judge the recordings, or there is no common sample.
-    """
-    rows = [contender(predictor, recordings) for predictor in predictors]
-    return compare_verdicts(rows, recordings, reference, parameters)
-
-
 def contender(predictor: Predictor, recordings: Sequence[Recording]) -> Contender:
     """Ask a predictor, unless it lacks what it needs."""
     words = (predictor.name, predictor.title, predictor.source)
@@ -151,7 +130,17 @@ def compare_verdicts(
     reference: str,
     parameters: EvaluationParameters = DEFAULTS,
 ) -> Comparison:
-    """Judge what was said of the same recordings; as `compare`."""
+    """Judge what predictors said of the same recordings, over the same samples.
+
+    Args:
+        rows: What each said, see `contender`.
+        recordings: Of drivers who trained none of them.
+        reference: Name of the one that the others are held against.
+        parameters: How it is judged.
+
+    Raises:
+        ValueError: If none can judge the recordings, or there is no common sample.
+    """
     checked = [_silence_named(row) for row in rows]
     able = [row for row in checked if not row.reason]
     excluded = [Excluded(r.name, r.title, r.reason) for r in checked if r.reason]

@@ -28,8 +28,7 @@ SLOTS = range(4)
 NARROWEST_RANGE, WIDEST_RANGE = 40, 900
 """Lock to lock that these wheels can be set to [deg]."""
 
-_CONSTANT, _SPRING, _DAMPER, _FRICTION = 0x00, 0x0B, 0x0C, 0x0E
-_DEAD_SPRING = 2048  # a dead band does not reach below this part of the coefficient
+_CONSTANT = 0x00
 
 
 class InputLayout(NamedTuple):
@@ -113,60 +112,6 @@ def constant(slot: int, level: int, operation: int = REFRESH) -> bytes:
     """
     content = [_CONSTANT] + [0] * 5
     content[1 + slot] = (_clipped(level, -0x8000, 0x7FFF) + 0x8000) >> 8
-    return _command(slot, operation, content)
-
-
-def spring(
-    slot: int,
-    coefficients: tuple[int, int],
-    dead_band: tuple[int, int],
-    clip: int,
-    operation: int = REFRESH,
-) -> bytes:
-    """Spring with a dead band.
-
-    Args:
-        slot: Of the effect, 0 to 3.
-        coefficients: Left and right of the dead band, -32768 to 32767.
-        dead_band: Its left and right end, -32768 to 32767.
-        clip: Strongest force, 0 to 65535.
-        operation: `PLAY` at first, `REFRESH` to change it.
-    """
-    (left, right), (low, high) = coefficients, dead_band
-    ends = [_upper(low + 0x8000, 11), _upper(high + 0x8000, 11)]
-    sizes = [abs(left), abs(right)]
-    for side, outermost in enumerate((0, 2047)):
-        if sizes[side] < _DEAD_SPRING:
-            ends[side] = outermost
-        else:
-            sizes[side] -= _DEAD_SPRING
-    content = [
-        _SPRING,
-        ends[0] >> 3,
-        ends[1] >> 3,
-        (_size(sizes[1], 4) << 4) + _size(sizes[0], 4),
-        ((ends[1] & 7) << 5) + ((ends[0] & 7) << 1) + _signs(left, right),
-        _upper(clip, 8),
-    ]
-    return _command(slot, operation, content)
-
-
-def damper(
-    slot: int, coefficients: tuple[int, int], clip: int, operation: int = REFRESH
-) -> bytes:
-    """Damper with a coefficient to each side; arguments as those of `spring`."""
-    left, right = coefficients
-    sides = [_size(left, 4), int(left < 0), _size(right, 4), int(right < 0)]
-    return _command(slot, operation, [_DAMPER, *sides, _upper(clip, 8)])
-
-
-def friction(
-    slot: int, coefficients: tuple[int, int], clip: int, operation: int = REFRESH
-) -> bytes:
-    """Friction with a coefficient to each side; arguments as those of `spring`."""
-    left, right = coefficients
-    sizes = [_size(left, 8), _size(right, 8)]
-    content = [_FRICTION, *sizes, _upper(clip, 8), _signs(left, right), 0]
     return _command(slot, operation, content)
 
 
@@ -257,17 +202,3 @@ def _padded(content: list[int]) -> bytes:
 
 def _clipped(value: int, low: int, high: int) -> int:
     return min(max(value, low), high)
-
-
-def _upper(value: int, bits: int) -> int:
-    """Upper bits of a 16-bit number."""
-    return _clipped(value, 0, 0xFFFF) >> (16 - bits)
-
-
-def _size(coefficient: int, bits: int) -> int:
-    """Upper bits of a coefficient's size; its sign goes elsewhere."""
-    return _upper(2 * abs(coefficient), bits)
-
-
-def _signs(left: int, right: int) -> int:
-    return (int(right < 0) << 4) + int(left < 0)
