@@ -15,7 +15,7 @@ from costeer.drivers.driver import DriverParameters
 from costeer.loop.parameters import DT, LoopParameters
 from costeer.loop.scenario import TrialSetup, loop_parameters, trial_method
 from costeer.methods.conditions import Condition, condition
-from costeer.methods.registry import METHODS, AnyMethod, method_named
+from costeer.methods.registry import AnyMethod, method_named
 
 PLANT_STEPS = 16
 """Plant steps in a control step with a person: 960 Hz."""
@@ -110,7 +110,7 @@ def trial_setup(name: str, method: str, changed: TrialSetup) -> TrialSetup:
 
 def strength_of(chosen: Condition, method: str) -> Real:
     """Strength factor of a condition; 0 with a method that does not assist [-]."""
-    return chosen.strength_factor if METHODS[method].assists else 0.0
+    return chosen.strength_factor if method_named(method).assists else 0.0
 
 
 def leader_draws(setup: DriveSetup) -> NDArray[np.float64]:
