@@ -15,7 +15,7 @@ from costeer.drivers.decision import DecisionParameters
 from costeer.loop.scenario import TrialSetup
 from costeer.loop.trial import simulate_trial
 
-FAITHFUL = TrialSetup(seed=3, intention="off", length=2500.0, change_duration=math.nan)
+FAITHFUL = TrialSetup(seed=3, intention="off", length=2500.0)
 FICKLE = FAITHFUL._replace(abandoned_share=1.0)
 DT = 1.0 / 60.0
 PARTICIPANTS = range(1, 5)

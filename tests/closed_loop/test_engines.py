@@ -15,6 +15,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from costeer.controller.step import ControllerParameters
 from costeer.drivers.driver import DriverNoise
 from costeer.intention.wavefront import initial_state
 from costeer.loop.jax_rollout import Fixed, float64, jax_rollouts, trace
@@ -25,6 +26,8 @@ from costeer.loop.rows import ROW_COLUMNS
 from costeer.loop.scenario import TrialSetup, loop_parameters
 from costeer.loop.tick import INTENTION_NETWORK, INTENTION_SCRIPTED, Script
 from costeer.loop.trial import idle_weights
+from costeer.methods.ibhs import IBHS
+from costeer.methods.interface import rule_of
 
 ENGINES = ("python", "numba", "jax")
 STEPS = 3600
@@ -33,13 +36,12 @@ STRONG = TrialSetup(
     participant=2,
     seed=900_001,
     condition="strong-normal",
-    strength_factor=1.0,
     intention="scripted",
 )
 SCRIPT = Script(INTENTION_SCRIPTED, STRONG.prediction_horizon, np.array([50.0]))
 
 
-def early_event(setup: TrialSetup) -> LoopParameters:
+def early_event(setup: TrialSetup) -> LoopParameters[ControllerParameters]:
     """The trial with its first leader after 100 m, so that 60 s hold an overtaking."""
     parameters = loop_parameters(setup)
     traffic = parameters.traffic._replace(first_event=100.0, appearance_distance=60.0)
@@ -56,7 +58,7 @@ def rows(engine: str) -> NDArray[np.float64]:
     weights = idle_weights()
     memory = initial_state(weights)
     parameters = early_event(STRONG)
-    return rollout(parameters, SCRIPT, weights, memory, noise(STRONG), engine)
+    return rollout(IBHS, parameters, SCRIPT, weights, memory, noise(STRONG), engine)
 
 
 def column(engine: str, name: str) -> NDArray[np.float64]:
@@ -98,7 +100,7 @@ def test_another_plant_step_is_seen_as_a_difference() -> None:
     weights = idle_weights()
     finer = early_event(STRONG)._replace(plant_steps=9)
     memory = initial_state(weights)
-    other = rollout(finer, SCRIPT, weights, memory, noise(STRONG), "numba")
+    other = rollout(IBHS, finer, SCRIPT, weights, memory, noise(STRONG), "numba")
     assert relative_difference(other, rows("numba")).max() > 1e-6
 
 
@@ -106,6 +108,7 @@ def test_another_plant_step_is_seen_as_a_difference() -> None:
 def test_drivers_together_in_jax_drive_as_each_alone() -> None:
     others = [STRONG, STRONG._replace(participant=3)]
     together = jax_rollouts(
+        IBHS,
         [early_event(setup) for setup in others],
         SCRIPT,
         np.stack([noise(setup) for setup in others]),
@@ -113,6 +116,7 @@ def test_drivers_together_in_jax_drive_as_each_alone() -> None:
     weights = idle_weights()
     for setup, drove in zip(others, together, strict=True):
         alone = rollout(
+            IBHS,
             early_event(setup),
             SCRIPT,
             weights,
@@ -130,7 +134,13 @@ def test_a_road_that_ends_ends_the_trial_in_every_engine() -> None:
     counts = {
         engine: len(
             rollout(
-                short, SCRIPT, weights, initial_state(weights), noise(STRONG), engine
+                IBHS,
+                short,
+                SCRIPT,
+                weights,
+                initial_state(weights),
+                noise(STRONG),
+                engine,
             )
         )
         for engine in ENGINES
@@ -142,6 +152,7 @@ def test_jax_refuses_the_network() -> None:
     asked = Script(INTENTION_NETWORK, 3.0, np.array([]))
     with pytest.raises(ValueError, match="'jax' does not run the intention network"):
         rollout(
+            IBHS,
             early_event(STRONG),
             asked,
             idle_weights(),
@@ -155,7 +166,7 @@ def test_trials_together_need_one_number_of_plant_steps() -> None:
     parameters = early_event(STRONG)
     two = [parameters, parameters._replace(plant_steps=16)]
     with pytest.raises(ValueError, match=r"have \[8, 16\] plant steps"):
-        jax_rollouts(two, SCRIPT, np.zeros((2, 10, len(DriverNoise._fields))))
+        jax_rollouts(IBHS, two, SCRIPT, np.zeros((2, 10, len(DriverNoise._fields))))
 
 
 def test_an_unknown_engine_is_refused_by_name() -> None:
@@ -188,7 +199,7 @@ def test_a_gradient_through_the_loop_equals_a_finite_difference() -> None:
         guidance = parameters.controller.guidance._replace(lateral_error_gain=gain)
         controller = parameters.controller._replace(guidance=guidance)
         changed = parameters._replace(controller=controller)
-        fixed = Fixed(plant_steps=8, intention=INTENTION_SCRIPTED)
+        fixed = Fixed(rule_of(IBHS), plant_steps=8, intention=INTENTION_SCRIPTED)
         _, filled = trace(changed, 3.0, np.array([]), drawn, fixed)
         return filled[-1, ROW_COLUMNS.index("lateral_position")]
 

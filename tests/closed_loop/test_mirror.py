@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from costeer.controller.step import ControllerParameters
 from costeer.drivers.driver import DriverNoise
 from costeer.intention.wavefront import initial_state
 from costeer.loop.noise import driver_noise
@@ -21,12 +22,12 @@ from costeer.loop.rows import ROW_COLUMNS
 from costeer.loop.scenario import TrialSetup, loop_parameters
 from costeer.loop.tick import INTENTION_SCRIPTED, Script
 from costeer.loop.trial import idle_weights
+from costeer.methods.ibhs import IBHS
 
 SETUP = TrialSetup(
     participant=2,
     seed=900_001,
     condition="strong-normal",
-    strength_factor=1.0,
     intention="scripted",
     initial_offset=0.3,
 )
@@ -54,7 +55,9 @@ SIGNED = (
 SIGNED_DRAWS = ("near", "motor", "wander", "head_drift", "head_tracker")
 
 
-def mirrored_parameters(parameters: LoopParameters) -> LoopParameters:
+def mirrored_parameters(
+    parameters: LoopParameters[ControllerParameters],
+) -> LoopParameters[ControllerParameters]:
     """Right-hand traffic and a driver who leans to the other side."""
     road = parameters.road._replace(overtaking_side=1.0)
     driver = parameters.driver
@@ -89,7 +92,8 @@ def trial(mirrored: bool) -> NDArray[np.float64]:
     if mirrored:
         parameters, noise = mirrored_parameters(parameters), mirrored_noise(noise)
     weights = idle_weights()
-    return rollout(parameters, SCRIPT, weights, initial_state(weights), noise, "numba")
+    memory = initial_state(weights)
+    return rollout(IBHS, parameters, SCRIPT, weights, memory, noise, "numba")
 
 
 def mirror(name: str, values: NDArray[np.float64]) -> NDArray[np.float64]:

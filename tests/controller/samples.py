@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterable
 
 from costeer.controller import step as controller
-from costeer.controller.signals import Signals
+from costeer.controller.signals import Assistance, Request
 from costeer.controller.step import ControllerParameters, ControllerState
 from costeer.plant.parameters import RoadParameters
 from costeer.sensing.measurement import Measurement
@@ -72,12 +72,11 @@ def run(
     samples: Iterable[Measurement],
     crossing_probability: float = math.nan,
     requested: bool = False,
-) -> tuple[ControllerState, list[Signals]]:
-    """Step the controller through samples; the last state and all signals."""
+) -> tuple[ControllerState, list[Assistance]]:
+    """Step the controller through samples; the last state and all that was computed."""
+    request = Request(crossing_probability, requested)
     every = []
     for measurement in samples:
-        state, signals = controller.step(
-            parameters, state, measurement, crossing_probability, requested, DT
-        )
+        state, signals = controller.step(parameters, state, measurement, request, DT)
         every.append(signals)
     return state, every

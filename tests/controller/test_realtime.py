@@ -16,6 +16,7 @@ from costeer.controller.realtime import (
     packed_controller,
     unpacked_signals,
 )
+from costeer.controller.signals import Request
 from costeer.controller.step import ControllerParameters
 from costeer.sensing.measurement import Measurement
 
@@ -48,8 +49,7 @@ def inputs() -> list[ControlInput]:
                 side=-1.0,
                 distance_to_adjacent_lane=1.75,
             ),
-            crossing_probability=1.0 if k > 100 else math.nan,
-            requested=False,
+            request=Request(1.0 if k > 100 else math.nan),
         )
         for k in range(300)
     ]
@@ -57,7 +57,7 @@ def inputs() -> list[ControlInput]:
 
 def test_packed_step_gives_the_signals_and_the_state_of_the_python_step() -> None:
     memory = packed_controller(PARAMETERS, LEFT_LANE)
-    state = controller.initial_state(PARAMETERS.road, LEFT_LANE)
+    state = controller.initial_state(PARAMETERS, LEFT_LANE)
     gains = []
     for given in inputs():
         state, signals = controller.step(PARAMETERS, state, *given, DT)

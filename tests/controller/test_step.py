@@ -10,7 +10,7 @@ import pytest
 from costeer.controller import step as controller
 from costeer.controller.actuation import WEAK, ActuationParameters
 from costeer.controller.consistency import ConsistencyParameters
-from costeer.controller.signals import LANE_CHANGING, LANE_KEEPING, Signals
+from costeer.controller.signals import LANE_CHANGING, LANE_KEEPING, Assistance
 from costeer.controller.step import ControllerParameters, ControllerState
 from costeer.plant.parameters import RoadParameters
 from costeer.sensing.measurement import Measurement
@@ -18,7 +18,6 @@ from tests.controller.samples import (
     DT,
     LEFT_LANE,
     RIGHT_LANE,
-    ROAD,
     SPEED,
     mirrored,
     run,
@@ -44,7 +43,7 @@ UNPLANNED = {
 }
 """What no plan is made of."""
 
-START = controller.initial_state(ROAD, LEFT_LANE)
+START = controller.initial_state(PARAMETERS, LEFT_LANE)
 
 
 def weaving(num_steps: int, driver_torque: float = 1.0) -> list[Measurement]:
@@ -66,7 +65,7 @@ def weaving(num_steps: int, driver_torque: float = 1.0) -> list[Measurement]:
 CONFLICT = weaving(220, driver_torque=4.0)
 
 
-def torques(signals: list[Signals]) -> list[float]:
+def torques(signals: list[Assistance]) -> list[float]:
     """What is asked of the motor."""
     return [s.applied_torque for s in signals]
 
@@ -165,7 +164,7 @@ def test_after_the_end_of_a_path_the_trigger_is_locked() -> None:
 
 
 def test_a_mirrored_drive_gives_mirrored_torques_and_the_same_gain() -> None:
-    start = controller.initial_state(ROAD, RIGHT_LANE)
+    start = controller.initial_state(PARAMETERS, RIGHT_LANE)
     left, left_signals = run(PARAMETERS, START, CONFLICT[:5], requested=True)
     right, right_signals = run(
         MIRRORED_ROAD, start, [mirrored(m) for m in CONFLICT[:5]], requested=True
@@ -228,7 +227,7 @@ def test_a_change_of_mode_is_no_jump_of_the_torque() -> None:
 def test_a_batch_gives_what_its_members_give() -> None:
     offsets = np.array([-0.4, 0.0, 0.1, 0.6])
 
-    def after(offset: float) -> tuple[ControllerState, list[Signals]]:
+    def after(offset: float) -> tuple[ControllerState, list[Assistance]]:
         samples = [sample(k, lateral_position=offset, yaw_rate=0.01) for k in range(3)]
         return run(PARAMETERS, START, samples)
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from functools import cache
 
 import numpy as np
@@ -23,6 +22,7 @@ from costeer.loop.scenario import (
 )
 from costeer.loop.tick import Script
 from costeer.loop.trial import idle_weights, record_columns, simulate_trial
+from costeer.methods.manual import MANUAL
 from costeer.records.columns import TrialRecord
 
 FRESH_SEED = 53
@@ -36,7 +36,6 @@ def manual_setup(participant: int, length: float = 8000.0) -> TrialSetup:
         condition="manual",
         method="manual",
         intention="off",
-        change_duration=math.nan,
         length=length,
     )
 
@@ -54,6 +53,7 @@ def recorded_with(friction: float) -> TrialRecord:
     column = parameters.column._replace(friction=friction)
     weights = idle_weights()
     rows = rollout(
+        MANUAL,
         parameters._replace(column=column),
         Script(INTENTIONS["off"], setup.prediction_horizon, np.zeros(0)),
         weights,

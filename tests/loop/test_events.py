@@ -6,7 +6,6 @@ import math
 
 import pytest
 
-from costeer.drivers.decision import CHANGING, CRUISING
 from costeer.loop.events import (
     EventState,
     event_zone,
@@ -24,13 +23,13 @@ TRAFFIC, ROAD = TrafficParameters(), RoadParameters()
 def after(
     state: EventState,
     position: float,
-    phase: float = CRUISING,
+    at_home: bool = True,
     lane: float = 1.0,
     uniform: float = 0.5,
 ) -> EventState:
     """Events one step later, with the car at a position."""
     car = driving(position, lane=lane)
-    return step_events(TRAFFIC, ROAD, state, car, phase, uniform, DT)
+    return step_events(TRAFFIC, ROAD, state, car, at_home, uniform, DT)
 
 
 def test_a_leader_appears_ahead_when_the_car_reaches_the_event() -> None:
@@ -56,7 +55,7 @@ def test_a_negative_draw_leaves_the_road_empty() -> None:
 
 def test_a_leader_waits_until_the_car_is_back_in_the_cruising_lane() -> None:
     assert not after(initial_events(), 1000.0, lane=RIGHT).leader.present
-    assert not after(initial_events(), 1000.0, phase=CHANGING).leader.present
+    assert not after(initial_events(), 1000.0, at_home=False).leader.present
 
 
 def test_there_are_four_leaders_and_no_fifth() -> None:
@@ -71,13 +70,13 @@ def test_the_zone_lasts_from_100_m_behind_until_the_return_is_settled() -> None:
     ahead = EventState(leader(200.0, 15.0), 0.0)
     passed = EventState(leader(200.0, 15.0), 1.0)
 
-    def zone(state: EventState, position: float, phase: float) -> float:
-        return event_zone(TRAFFIC, state, position, phase)
+    def zone(state: EventState, position: float, at_home: bool) -> float:
+        return event_zone(TRAFFIC, state, position, at_home)
 
-    assert zone(ahead, 99.0, CRUISING) == 0.0
-    assert zone(ahead, 100.0, CRUISING) == 1.0
-    assert zone(passed, 230.0, CHANGING) == 1.0  # beside and past the leader
-    assert zone(passed, 260.0, CRUISING) == 0.0  # returned and settled
+    assert zone(ahead, 99.0, True) == 0.0
+    assert zone(ahead, 100.0, True) == 1.0
+    assert zone(passed, 230.0, False) == 1.0  # beside and past the leader
+    assert zone(passed, 260.0, True) == 0.0  # returned and settled
 
 
 def test_a_leader_drives_on_at_its_speed() -> None:

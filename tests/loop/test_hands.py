@@ -2,19 +2,22 @@
 
 from __future__ import annotations
 
-import math
 from typing import NamedTuple
 
 import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from costeer.controller.signals import Request
+from costeer.controller.step import ControllerParameters, ControllerState
 from costeer.drivers.driver import DriverNoise, DriverParameters
 from costeer.drivers.population import hands_off, participant_driver
 from costeer.loop import step as loop
 from costeer.loop.noise import driver_noise
 from costeer.loop.parameters import DT, LoopParameters, StartParameters
 from costeer.loop.step import LoopState
+from costeer.methods.ibhs import IBHS
+from costeer.methods.interface import rule_of
 from costeer.plant import world
 from costeer.plant.parameters import CarParameters, ColumnParameters
 from costeer.plant.steering import aligning_torque
@@ -23,6 +26,7 @@ from costeer.plant.world import Inputs, WorldState
 
 SMOOTH = ColumnParameters(friction=0.0)
 SPEED = 20.0
+RULE = rule_of(IBHS)
 
 
 class Moment(NamedTuple):
@@ -37,12 +41,14 @@ class Moment(NamedTuple):
 class Run(NamedTuple):
     """States of a run, and the plant steps between each two."""
 
-    states: list[LoopState]
+    states: list[LoopState[ControllerState]]
     moments: list[list[Moment]]
 
 
 def run(
-    parameters: LoopParameters, num_steps: int, monkeypatch: pytest.MonkeyPatch
+    parameters: LoopParameters[ControllerParameters],
+    num_steps: int,
+    monkeypatch: pytest.MonkeyPatch,
 ) -> Run:
     """Drive with noise against a change asked for after 1 s; listen to the plant."""
     heard: list[Moment] = []
@@ -60,13 +66,13 @@ def run(
         return after
 
     monkeypatch.setattr(world, "step", listening)
-    state = loop.initial_state(parameters)
+    state = loop.initial_state(RULE, parameters)
     states, moments = [state], []
     for k, draws in enumerate(driver_noise(900_001, 3, "pilot", num_steps)):
         noise = DriverNoise(*draws.tolist())
         measurement = loop.sense(parameters, state)
-        asked = 60 <= k < 66
-        state, _ = loop.step(parameters, state, measurement, math.nan, asked, noise)
+        asked = Request(requested=60 <= k < 66)
+        state, _ = loop.step(RULE, parameters, state, measurement, asked, noise)
         states.append(state)
         moments.append(list(heard))
         heard.clear()
@@ -93,9 +99,12 @@ def torque_on_the_column(column: ColumnParameters, moments: list[Moment]) -> flo
     return impulse / DT
 
 
-def wild(column: ColumnParameters, steps: int = 8) -> LoopParameters:
+def wild(
+    column: ColumnParameters, steps: int = 8
+) -> LoopParameters[ControllerParameters]:
     """A driver half a metre beside the lane, strong guidance against the arms."""
     return LoopParameters(
+        controller=ControllerParameters(),
         column=column,
         driver=participant_driver(900_001, 3, SPEED),
         start=StartParameters(speed=SPEED, lateral_offset=0.5),

@@ -29,7 +29,6 @@ from tests.drivers.samples import LEFT, RIGHT, driving
 SETUP = TrialSetup(
     seed=3,
     condition="strong-normal",
-    strength_factor=1.0,
     intention="network",
     length=3000.0,
 )

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
+from typing import TypeAlias
 
 import numpy as np
 import pytest
 from numpy.typing import NDArray
 
 from costeer.base.packing import pack, packed, unpack
+from costeer.controller.step import ControllerParameters
 from costeer.loop.parameters import DT, LoopParameters
 from costeer.loop.person import PersonInput, initial_motion
 from costeer.loop.real_wheel import WheelInput
@@ -24,11 +26,10 @@ from costeer.loop.rows import ROW_COLUMNS
 from costeer.loop.scenario import TrialSetup, loop_parameters
 from costeer.loop.tick import REQUEST_DURATION
 from costeer.loop.trial import simulate_trial
+from costeer.methods.ibhs import IBHS
 
 SETUP = TrialSetup(
     condition="strong-normal",
-    strength_factor=1.0,
-    change_duration=6.0,
     driver="hands-off",
     intention="off",
     length=400.0,
@@ -37,26 +38,29 @@ SETUP = TrialSetup(
     initial_offset=0.3,
     plant_steps=16,
 )
+MANUAL = SETUP._replace(condition="manual", driver="virtual", trigger_times=())
 PARAMETERS = loop_parameters(SETUP)
+TICK = control_tick(IBHS)
+Parameters: TypeAlias = LoopParameters[ControllerParameters]
 OF_THE_PERSON = {"driver_intention", "head_yaw", "head_yaw_valid"}
 OF_THE_FOOT = {"accelerator", "brake"}
 
 
-def driven(parameters: LoopParameters, given: list[PersonInput]) -> NDArray[np.float64]:
+def driven(parameters: Parameters, given: list[PersonInput]) -> NDArray[np.float64]:
     """Rows of a drive with virtual hands."""
-    memory = person_memory(parameters)
+    memory = person_memory(IBHS, parameters)
     rows = []
     for now in given:
         pack(memory.given, now)
         control(memory, has_wheel=False)
         rows.append(memory.row.copy())
         for _ in range(parameters.plant_steps):
-            hands_tick(memory.parameters, memory.motion, memory.held)
+            hands_tick(memory.plant, memory.motion, memory.held)
     return np.array(rows)
 
 
 def control(memory: PersonMemory, has_wheel: bool) -> None:
-    control_tick(
+    TICK(
         memory.parameters,
         memory.state,
         memory.motion,
@@ -95,8 +99,7 @@ def test_without_hands_it_is_the_trial_of_the_studies_bit_for_bit() -> None:
 
 
 def test_intended_angle_to_the_left_turns_wheel_and_car_to_the_left() -> None:
-    setup = SETUP._replace(driver="virtual", strength_factor=0.0, trigger_times=())
-    parameters = loop_parameters(setup._replace(initial_offset=0.0))
+    parameters = loop_parameters(MANUAL._replace(initial_offset=0.0))
     left = NOTHING_GIVEN._replace(intended_angle=0.1, grip=1.0)
     rows = driven(parameters, [left] * 60)
     mirrored = driven(parameters, [left._replace(intended_angle=-0.1)] * 60)
@@ -144,9 +147,8 @@ def wheel_input(angle: float, rate: float, **changed: float) -> WheelInput:
 
 def test_wheel_that_moves_as_the_column_would_leaves_the_same_track() -> None:
     # The angles of a drive with virtual hands, played into the loop of a real wheel.
-    setup = SETUP._replace(driver="virtual", strength_factor=0.0, trigger_times=())
-    parameters = loop_parameters(setup._replace(initial_offset=0.0))
-    memory, other = person_memory(parameters), person_memory(parameters)
+    parameters = loop_parameters(MANUAL._replace(initial_offset=0.0))
+    memory, other = person_memory(IBHS, parameters), person_memory(IBHS, parameters)
     steer = NOTHING_GIVEN._replace(intended_angle=0.1, grip=1.0)
     for _ in range(60):
         pack(memory.given, steer)
@@ -154,14 +156,14 @@ def test_wheel_that_moves_as_the_column_would_leaves_the_same_track() -> None:
         control(memory, has_wheel=False)
         control(other, has_wheel=True)
         for _ in range(16):
-            hands_tick(memory.parameters, memory.motion, memory.held)
+            hands_tick(memory.plant, memory.motion, memory.held)
             moved = unpack(initial_motion(parameters), memory.motion)
             wheel = moved.plant.world.column
             pack(
                 other.wheel,
                 wheel_input(wheel.steering_wheel_angle, wheel.steering_wheel_rate),
             )
-            wheel_tick(other.parameters, other.motion, other.held, other.wheel)
+            wheel_tick(other.plant, other.motion, other.held, other.wheel)
     np.testing.assert_array_equal(
         column(memory.row[None], "lateral_position"),
         column(other.row[None], "lateral_position"),
@@ -172,12 +174,12 @@ def test_wheel_that_moves_as_the_column_would_leaves_the_same_track() -> None:
 def test_wheel_at_rest_is_pulled_by_the_columns_stiffness(angle: float) -> None:
     # Straight ahead with the wheel turned: after one plant step the car has hardly
     # turned, so the tyres' torque is that of the slip angle -angle / ratio.
-    memory = person_memory(PARAMETERS)
+    memory = person_memory(IBHS, PARAMETERS)
     car, stiffness = PARAMETERS.car, PARAMETERS.column.stiffness
     torque = np.nan
     for _ in range(2):
         pack(memory.wheel, wheel_input(angle, 0.0))
-        torque = wheel_tick(memory.parameters, memory.motion, memory.held, memory.wheel)
+        torque = wheel_tick(memory.plant, memory.motion, memory.held, memory.wheel)
     tyres = -car.aligning_stiffness * angle / car.steering_ratio
     # Within 4 %: the brush tyre gives a little less than its stiffness times slip.
     expected = tyres - stiffness * angle
@@ -185,12 +187,12 @@ def test_wheel_at_rest_is_pulled_by_the_columns_stiffness(angle: float) -> None:
 
 
 def test_device_with_damping_of_its_own_is_given_that_much_less() -> None:
-    memory = person_memory(PARAMETERS)
+    memory = person_memory(IBHS, PARAMETERS)
     torques = []
     for damping in (0.0, 0.5, PARAMETERS.column.damping, 9.0):
         pack(memory.wheel, wheel_input(0.0, 1.0, damping=damping, friction=9.0))
         torques.append(
-            wheel_tick(memory.parameters, memory.motion, memory.held, memory.wheel)
+            wheel_tick(memory.plant, memory.motion, memory.held, memory.wheel)
         )
     assert torques[1] - torques[0] == pytest.approx(0.5, abs=0.01)
     # More damping than the column's cannot be taken away.
@@ -198,37 +200,45 @@ def test_device_with_damping_of_its_own_is_given_that_much_less() -> None:
 
 
 def test_torque_of_a_real_wheel_is_its_mean_over_the_control_step() -> None:
-    memory = person_memory(PARAMETERS)
+    memory = person_memory(IBHS, PARAMETERS)
     control(memory, has_wheel=True)
     for k in range(16):
         pack(memory.wheel, wheel_input(0.0, 0.0, driver_torque=float(k)))
-        wheel_tick(memory.parameters, memory.motion, memory.held, memory.wheel)
+        wheel_tick(memory.plant, memory.motion, memory.held, memory.wheel)
     control(memory, has_wheel=True)
     assert column(memory.row[None], "driver_torque")[0] == pytest.approx(7.5)
 
 
 def test_lost_torque_sensor_leaves_no_guidance() -> None:
-    memory = person_memory(PARAMETERS)
+    memory = person_memory(IBHS, PARAMETERS)
     for _ in range(60):
         control(memory, has_wheel=True)
         for _ in range(16):
             pack(memory.wheel, wheel_input(0.0, 0.0, driver_torque=math.nan))
-            wheel_tick(memory.parameters, memory.motion, memory.held, memory.wheel)
+            wheel_tick(memory.plant, memory.motion, memory.held, memory.wheel)
     assert abs(column(memory.row[None], "applied_torque")[0]) < 1e-12
 
 
 def test_compiled_and_plain_ticks_agree() -> None:
-    here, there = person_memory(PARAMETERS), person_memory(PARAMETERS)
+    here, there = person_memory(IBHS, PARAMETERS), person_memory(IBHS, PARAMETERS)
     for k in range(40):
         given = NOTHING_GIVEN._replace(intended_angle=0.01 * k, grip=1.0)
         for memory, engine in ((here, "compiled"), (there, "plain")):
             plain = engine == "plain"
-            tick = control_tick.py_func if plain else control_tick  # type: ignore[attr-defined]  # Numba adds it
+            tick = TICK.py_func if plain else TICK  # type: ignore[attr-defined]  # Numba adds it
             move = hands_tick.py_func if plain else hands_tick  # type: ignore[attr-defined]  # Numba adds it
             pack(memory.given, given)
-            tick(*memory[:4], False, memory.held, memory.row)
+            tick(
+                memory.parameters,
+                memory.state,
+                memory.motion,
+                memory.given,
+                False,
+                memory.held,
+                memory.row,
+            )
             for _ in range(16):
-                move(memory.parameters, memory.motion, memory.held)
+                move(memory.plant, memory.motion, memory.held)
     np.testing.assert_allclose(here.row, there.row, 1e-12, 1e-14)
     np.testing.assert_allclose(here.state, there.state, 1e-12, 1e-14)
 
@@ -250,5 +260,5 @@ def test_leader_appears_and_its_zone_ends_when_the_car_has_settled_again() -> No
 
 def test_packed_memory_holds_the_parameters_in_order() -> None:
     np.testing.assert_array_equal(
-        person_memory(PARAMETERS).parameters, packed(PARAMETERS)
+        person_memory(IBHS, PARAMETERS).parameters, packed(PARAMETERS)
     )

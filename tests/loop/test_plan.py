@@ -10,13 +10,19 @@ import pytest
 from numpy.typing import NDArray
 
 from costeer.base.bezier import Quintic, path_point
+from costeer.controller.step import ControllerParameters
 from costeer.drivers.driver import DriverNoise
-from costeer.loop import step as loop
+from costeer.intention.wavefront import initial_state as network_memory
 from costeer.loop.noise import driver_noise
 from costeer.loop.parameters import DT, LoopParameters
 from costeer.loop.scenario import PILOT_SEED, TrialSetup, loop_parameters
-from costeer.loop.tick import scripted_probability
+from costeer.loop.step import initial_state
+from costeer.loop.tick import INTENTION_SCRIPTED, Script, tick
+from costeer.loop.trial import idle_weights
+from costeer.methods.ibhs import IBHS
+from costeer.methods.interface import rule_of
 
+RULE = rule_of(IBHS)
 METHODS_DURATION = 5.0
 WHO = (1, pytest.param(2, marks=pytest.mark.slow))
 
@@ -55,7 +61,9 @@ def setup(participant: int) -> TrialSetup:
     )
 
 
-def parameters_of(participant: int, follows_plan: float) -> LoopParameters:
+def parameters_of(
+    participant: int, follows_plan: float
+) -> LoopParameters[ControllerParameters]:
     """Their trial with one leader, early."""
     usual = loop_parameters(setup(participant))
     early = usual.traffic._replace(
@@ -68,20 +76,22 @@ def parameters_of(participant: int, follows_plan: float) -> LoopParameters:
 def changes(participant: int, follows_plan: float) -> Changes:
     """Half a minute: over to the other lane and back."""
     parameters = parameters_of(participant, follows_plan)
-    state = loop.initial_state(parameters)
+    state = initial_state(RULE, parameters)
+    script = Script(INTENTION_SCRIPTED, 3.0, np.zeros(0))
+    network = idle_weights(), network_memory(idle_weights())
     found = Changes([], [], [])
     for draws in driver_noise(PILOT_SEED, participant, "pilot", round(30.0 / DT)):
-        before, measurement = state, loop.sense(parameters, state)
-        probability = scripted_probability(parameters, state, 3.0)
-        noise = DriverNoise(*draws.tolist())
-        state, _ = loop.step(parameters, state, measurement, probability, False, noise)
-        own, system = state.driver.tracking.path, state.controller.trajectory.path
-        speed = measurement.longitudinal_velocity
+        before, noise = state, DriverNoise(*draws.tolist())
+        state, row = tick(RULE, parameters, state, script, *network, noise)
+        own, system = state.driver.tracking.path, state.control.method.trajectory.path
+        speed = row.motion.longitudinal_velocity
         if own != before.driver.tracking.path:
-            found.driver.append(Change(before.time, own.length / speed, own))
+            found.driver.append(Change(before.control.time, own.length / speed, own))
             found.drawn.append(state.driver.decision.change_duration)
-        if system != before.controller.trajectory.path:
-            found.system.append(Change(before.time, system.length / speed, system))
+        if system != before.control.method.trajectory.path:
+            found.system.append(
+                Change(before.control.time, system.length / speed, system)
+            )
     return found
 
 

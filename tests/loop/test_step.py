@@ -3,26 +3,36 @@
 from __future__ import annotations
 
 import math
+from typing import TypeAlias
 
 import numpy as np
 import pytest
 
+from costeer.controller.signals import Request
+from costeer.controller.step import ControllerParameters, ControllerState
 from costeer.drivers.decision import CHANGING, PREPARING
 from costeer.drivers.driver import DriverNoise, DriverParameters
 from costeer.drivers.population import hands_off
+from costeer.loop.half_step import Sample
 from costeer.loop.parameters import DT, LoopParameters, StartParameters
 from costeer.loop.step import LoopState, initial_state, planned_to_cross, sense, step
 from costeer.loop.tick import REQUEST_DURATION, requested, scripted_probability
+from costeer.methods.ibhs import IBHS
+from costeer.methods.interface import rule_of
 from costeer.plant.parameters import ColumnParameters
 
 QUIET = DriverNoise(*([0.0] * len(DriverNoise._fields)))._replace(
     look_uniform=1.0, glance_uniform=1.0, leader_uniform=-1.0, tracker_uniform=0.9
 )
 SPEED = 20.0
+RULE = rule_of(IBHS)
+Parameters: TypeAlias = LoopParameters[ControllerParameters]
+State: TypeAlias = LoopState[ControllerState]
 
 
-def hands_off_loop(offset: float = 0.0, steps: int = 8) -> LoopParameters:
+def hands_off_loop(offset: float = 0.0, steps: int = 8) -> Parameters:
     return LoopParameters(
+        controller=ControllerParameters(),
         driver=hands_off(SPEED),
         start=StartParameters(speed=SPEED, lateral_offset=offset),
         plant_steps=steps,
@@ -32,12 +42,19 @@ def hands_off_loop(offset: float = 0.0, steps: int = 8) -> LoopParameters:
 PARAMETERS = hands_off_loop()
 
 
-def run(parameters: LoopParameters, num_steps: int) -> list[LoopState]:
+def after(
+    parameters: Parameters, state: State, noise: DriverNoise = QUIET
+) -> tuple[State, Sample[ControllerState]]:
+    """One step later, nothing asked of the method."""
+    measurement = sense(parameters, state)
+    return step(RULE, parameters, state, measurement, Request(), noise)
+
+
+def run(parameters: Parameters, num_steps: int) -> list[State]:
     """States after each step, nobody at the wheel, no noise."""
-    state, states = initial_state(parameters), []
+    state, states = initial_state(RULE, parameters), []
     for _ in range(num_steps):
-        measurement = sense(parameters, state)
-        state, _ = step(parameters, state, measurement, math.nan, False, QUIET)
+        state, _ = after(parameters, state)
         states.append(state)
     return states
 
@@ -52,12 +69,12 @@ def test_a_car_in_the_middle_of_its_lane_stays_there() -> None:
 
 def test_a_torque_acts_one_control_step_after_its_measurement() -> None:
     first, second, *_ = run(hands_off_loop(offset=0.5), 3)
-    assert first.torque_command < 0.0  # computed from the first sample
+    assert first.control.torque_command < 0.0  # computed from the first sample
     assert first.world.column.motor_torque == 0.0  # and not yet given
     # From rest, the motor's lag lets through this much of it in one control step.
     share = 1.0 - math.exp(-DT / ColumnParameters().motor_lag)
     given = second.world.column.motor_torque
-    assert given == pytest.approx(share * first.torque_command, rel=1e-9)
+    assert given == pytest.approx(share * first.control.torque_command, rel=1e-9)
 
 
 def test_finer_plant_steps_change_a_run_little() -> None:
@@ -71,8 +88,8 @@ def test_finer_plant_steps_change_a_run_little() -> None:
 def test_the_trial_starts_in_the_cruising_lane_of_its_side() -> None:
     left = hands_off_loop()
     right = left._replace(road=left.road._replace(overtaking_side=1.0))
-    assert initial_state(left).world.vehicle.lateral_position == 0.0
-    assert initial_state(right).world.vehicle.lateral_position == -3.5
+    assert initial_state(RULE, left).world.vehicle.lateral_position == 0.0
+    assert initial_state(RULE, right).world.vehicle.lateral_position == -3.5
 
 
 def test_a_request_lasts_a_tenth_of_a_second() -> None:
@@ -88,12 +105,12 @@ def test_a_plan_counts_while_its_crossing_lies_ahead_within_the_horizon() -> Non
 
 
 def test_a_verdict_comes_the_horizon_or_half_the_change_before_the_crossing() -> None:
-    state = initial_state(PARAMETERS)
+    state = initial_state(RULE, PARAMETERS)
     plan = state.driver.decision._replace(
         phase=PREPARING, preparation_time=9.0, change_duration=8.0
     )
 
-    def verdicts(parameters: LoopParameters) -> list[float]:
+    def verdicts(parameters: Parameters) -> list[float]:
         """When the verdict is positive before the crossing, 13 s after the decision."""
         times = np.arange(0.0, 9.0, 0.1)
         states = [
@@ -115,26 +132,24 @@ def test_a_verdict_comes_the_horizon_or_half_the_change_before_the_crossing() ->
 
 def test_the_tracker_sees_the_head_of_the_step_before() -> None:
     turned = hands_off_loop()._replace(driver=DriverParameters())
-    state = initial_state(turned)
+    state = initial_state(RULE, turned)
     head = state.driver.gaze._replace(
         glancing=True, time_in_glance=0.5, side=1.0, amplitude=0.4
     )
     state = state._replace(driver=state.driver._replace(gaze=head))
     assert sense(turned, state).head_yaw == 0.0
-    after, _ = step(turned, state, sense(turned, state), math.nan, False, QUIET)
-    assert sense(turned, after).head_yaw == pytest.approx(0.4)
-    assert sense(turned, after).head_yaw_valid
+    moved, _ = after(turned, state)
+    assert sense(turned, moved).head_yaw == pytest.approx(0.4)
+    assert sense(turned, moved).head_yaw_valid
 
 
 def test_a_lost_face_is_not_valid_in_the_measurement() -> None:
     lost = QUIET._replace(tracker_uniform=0.0)  # below any rate times the step
-    state = initial_state(PARAMETERS)
-    after, sample = step(
-        PARAMETERS, state, sense(PARAMETERS, state), math.nan, False, lost
-    )
+    state = initial_state(RULE, PARAMETERS)
+    moved, sample = after(PARAMETERS, state, lost)
     assert sample.measurement.head_yaw_valid
-    assert not sense(PARAMETERS, after).head_yaw_valid
+    assert not sense(PARAMETERS, moved).head_yaw_valid
 
 
 def test_a_driver_without_a_plan_is_no_positive() -> None:
-    assert scripted_probability(PARAMETERS, initial_state(PARAMETERS), 3.0) == 0.0
+    assert scripted_probability(PARAMETERS, initial_state(RULE, PARAMETERS), 3.0) == 0.0

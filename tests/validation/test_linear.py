@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import math
 from functools import cache
+from typing import TypeAlias
 
 import numpy as np
 import pytest
 from numpy.typing import NDArray
 from scipy.linalg import expm
 
+from costeer.controller.step import ControllerParameters
 from costeer.intention.wavefront import initial_state
 from costeer.loop.noise import driver_noise
 from costeer.loop.parameters import DT, LoopParameters
@@ -18,6 +20,7 @@ from costeer.loop.rows import ROW_COLUMNS
 from costeer.loop.scenario import TrialSetup, loop_parameters
 from costeer.loop.tick import INTENTION_OFF, Script
 from costeer.loop.trial import idle_weights
+from costeer.methods.ibhs import IBHS
 from costeer.plant.parameters import CARS, CarParameters
 from costeer.validation.linear import (
     LinearLoop,
@@ -35,12 +38,13 @@ SPEEDS_KMH = (50, 70, 90, 110)
 GAINS = (0.02, 0.05, 0.1, 0.2, 0.4, 0.7, 1.0)
 CASES = [(car, speed) for car in sorted(CARS) for speed in SPEEDS_KMH]
 SMALL = 1e-3
+Parameters: TypeAlias = LoopParameters[ControllerParameters]
 
 
-def hands_off(car: str, speed_kmh: float, preview_time: float = 1.5) -> LoopParameters:
+def hands_off(car: str, speed_kmh: float, preview_time: float = 1.5) -> Parameters:
     """Strong guidance alone, 1 mm beside the lane's centre."""
     setup = TrialSetup(
-        strength_factor=1.0,
+        condition="strong-normal",
         car=car,
         speed=speed_kmh / 3.6,
         driver="hands-off",
@@ -60,7 +64,7 @@ def loop(car: str, speed_kmh: float, compensated: bool = False) -> LinearLoop:
 
 
 def simulated(
-    parameters: LoopParameters, compensated: bool, seconds: float
+    parameters: Parameters, compensated: bool, seconds: float
 ) -> NDArray[np.float64]:
     """Lateral position in the nonlinear loop without dry friction."""
     smooth = parameters.column._replace(friction=0.0)
@@ -69,6 +73,7 @@ def simulated(
         method = method._replace(column=smooth)
     weights = idle_weights()
     rows = rollout(
+        IBHS,
         parameters._replace(column=smooth, controller=method),
         Script(INTENTION_OFF, 3.0, np.zeros(0)),
         weights,

@@ -9,8 +9,9 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from costeer.controller.consistency import ConsistencyParameters
 from costeer.loop.parameters import DT
-from costeer.loop.scenario import PILOT_SEED, TrialSetup
+from costeer.loop.scenario import PILOT_SEED, TrialSetup, loop_parameters
 from costeer.loop.trial import simulate_trial
 from costeer.validation.resistance import (
     QUANTITIES,
@@ -47,8 +48,12 @@ def setup_at_zero() -> TrialSetup:
 
 def test_both_systems_meet_the_same_driver_with_the_same_noise() -> None:
     real, other = (wrong_change(PILOT_SEED, 4, 6.0, s, 1) for s in SYSTEMS)
-    assert other._replace(inconsistency_threshold=real.inconsistency_threshold) == real
-    assert other.inconsistency_threshold == 100.0
+    assert other._replace(parameters=real.parameters) == real
+    thresholds = [
+        loop_parameters(setup).controller.consistency.inconsistency_threshold
+        for setup in (real, other)
+    ]
+    assert thresholds == [ConsistencyParameters().inconsistency_threshold, 100.0]
     before = round(real.trigger_times[0] / DT)
     ways = [simulate_trial(s).columns["lateral_position"] for s in (real, other)]
     assert (ways[0][:before] == ways[1][:before]).all()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from functools import cache
+from typing import Any
 
 import numpy as np
 import pytest
@@ -18,6 +19,7 @@ from costeer.loop.rows import ROW_COLUMNS
 from costeer.loop.scenario import PILOT_SEED, TrialSetup, loop_parameters
 from costeer.loop.tick import INTENTION_OFF, Script
 from costeer.loop.trial import idle_weights, simulate_trial
+from costeer.methods.manual import MANUAL
 from costeer.plant.parameters import CARS
 from costeer.validation.driver_loop import (
     STATES,
@@ -49,7 +51,7 @@ FRESH_SEED = 101
 TIME = np.arange(3600) * DT
 
 
-def loop_of(driver: DriverParameters, car: str, speed: float) -> LoopParameters:
+def loop_of(driver: DriverParameters, car: str, speed: float) -> LoopParameters[Any]:
     return loop_parameters(manual_setup(car, speed))._replace(driver=driver)
 
 
@@ -215,7 +217,8 @@ def lane_position(number: int, friction: float) -> Signal:
     noise = driver_noise(PILOT_SEED, number, "friction", round(550.0 / DT))
     script = Script(INTENTION_OFF, 3.0, np.empty(0))
     weights = idle_weights()
-    rows = rollout(parameters, script, weights, network_memory(weights), noise, "numba")
+    memory = network_memory(weights)
+    rows = rollout(MANUAL, parameters, script, weights, memory, noise, "numba")
     return rows[round(10.0 / DT) :, ROW_COLUMNS.index("lateral_position")]
 
 

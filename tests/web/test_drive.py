@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 import pytest
 
+from costeer.methods.ibhs import TUNABLES
 from costeer.runtime.frame import FRAME_COLUMNS, PLACE
 from costeer.runtime.markers import Marker
-from costeer.runtime.tunables import TUNABLES
 from costeer.web.drive import DriveOnPages, PageOptions
 from costeer.web.messages import (
     Indicator,

@@ -205,7 +205,7 @@ def trial_metadata(
         "seed": setup.seed,
         "participant": setup.participant,
         "condition": setup.condition,
-        "strength_factor": condition.strength_factor,
+        "strength_factor": condition.strength_factor if method.assists else 0.0,
         "change_duration": condition.change_duration,
         "method": method.name,
         "method_version": method.version,
