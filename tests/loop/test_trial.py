@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import math
 from functools import cache
 
 import numpy as np
@@ -15,11 +14,10 @@ from costeer.loop.scenario import TrialSetup
 from costeer.loop.trial import GUIDANCE_COLUMNS, simulate_trial, trial_duration
 from costeer.records.columns import COLUMNS, METADATA_FIELDS, TrialRecord
 
-MANUAL = TrialSetup(seed=3, intention="off", length=1800.0, change_duration=math.nan)
+MANUAL = TrialSetup(seed=3, intention="off", length=1800.0)
 STRONG = TrialSetup(
     seed=3,
     condition="strong-normal",
-    strength_factor=1.0,
     intention="scripted",
     length=1800.0,
 )
@@ -196,7 +194,7 @@ def test_metadata_says_what_was_run() -> None:
 
 
 def test_another_setting_gives_another_configuration_hash() -> None:
-    other = STRONG._replace(hold_time=0.2)
+    other = STRONG._replace(parameters=(("consistency.hold_time", 0.2),))
     hashes = {trial(s).metadata["configuration_hash"] for s in (STRONG, other, MANUAL)}
     assert len(hashes) == 3
 
