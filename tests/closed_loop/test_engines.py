@@ -20,10 +20,10 @@ from costeer.intention.wavefront import initial_state
 from costeer.loop.jax_rollout import Fixed, float64, jax_rollouts, trace
 from costeer.loop.noise import driver_noise
 from costeer.loop.rollout import INTENTION_NETWORK, INTENTION_SCRIPTED, Script, rollout
-from costeer.loop.rows import ROW_COLUMNS
 from costeer.loop.scenario import TrialSetup, loop_parameters
 from costeer.loop.step import LoopParameters
 from costeer.loop.trial import idle_weights
+from costeer.records.row import ROW_COLUMNS
 
 ENGINES = ("python", "numba", "jax")
 STEPS = 3600

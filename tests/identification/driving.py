@@ -21,8 +21,9 @@ from costeer.loop.scenario import (
     loop_parameters,
     trial_driver,
 )
-from costeer.loop.trial import idle_weights, record_columns, simulate_trial
+from costeer.loop.trial import idle_weights, simulate_trial
 from costeer.records.columns import TrialRecord
+from costeer.records.row import record_columns
 
 FRESH_SEED = 53
 """Nothing was ever chosen on drivers of this seed."""

@@ -20,10 +20,10 @@ from costeer.loop.realtime import (
     wheel_tick,
 )
 from costeer.loop.rollout import REQUEST_DURATION
-from costeer.loop.rows import ROW_COLUMNS
 from costeer.loop.scenario import TrialSetup, loop_parameters
 from costeer.loop.step import DT, LoopParameters
 from costeer.loop.trial import simulate_trial
+from costeer.records.row import ROW_COLUMNS
 
 SETUP = TrialSetup(
     condition="strong-normal",

@@ -13,11 +13,11 @@ from scipy.linalg import expm
 from costeer.intention.wavefront import initial_state
 from costeer.loop.noise import driver_noise
 from costeer.loop.rollout import INTENTION_OFF, Script, rollout
-from costeer.loop.rows import ROW_COLUMNS
 from costeer.loop.scenario import TrialSetup, loop_parameters
 from costeer.loop.step import DT, LoopParameters
 from costeer.loop.trial import idle_weights
 from costeer.plant.parameters import CARS, CarParameters
+from costeer.records.row import ROW_COLUMNS
 from costeer.validation.linear import (
     LinearLoop,
     closed_loop,

@@ -13,11 +13,11 @@ from costeer.drivers.population import participant_driver
 from costeer.intention.wavefront import initial_state as network_memory
 from costeer.loop.noise import driver_noise
 from costeer.loop.rollout import INTENTION_OFF, Script, rollout
-from costeer.loop.rows import ROW_COLUMNS
 from costeer.loop.scenario import PILOT_SEED, TrialSetup, loop_parameters
 from costeer.loop.step import DT, LoopParameters
 from costeer.loop.trial import idle_weights, simulate_trial
 from costeer.plant.parameters import CARS
+from costeer.records.row import ROW_COLUMNS
 from costeer.validation.driver_loop import (
     STATES,
     least_damped,

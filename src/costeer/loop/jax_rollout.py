@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from costeer.base.array import Real
 from costeer.drivers.driver import DriverNoise
 from costeer.loop.rollout import INTENTION_NETWORK, Script, tick
+from costeer.loop.rows import row_values
 from costeer.loop.step import LoopParameters, LoopState, initial_state
 
 
@@ -80,8 +81,8 @@ def trace(
 
     def advance(state: LoopState, draws: Any) -> tuple[LoopState, Any]:
         drawn = DriverNoise(*draws)
-        moved, row = tick(parameters, state, script, no_network, no_network, drawn)
-        numbers = [jax.numpy.asarray(n, float) for n in jax.tree_util.tree_leaves(row)]
+        moved, sample = tick(parameters, state, script, no_network, no_network, drawn)
+        numbers = [jax.numpy.asarray(n, float) for n in row_values(sample)]
         new_state = jax.tree_util.tree_map(_as_before, state, moved)
         position = new_state.world.vehicle.longitudinal_position
         return new_state, (position, jax.numpy.stack(numbers))

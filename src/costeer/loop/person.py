@@ -23,7 +23,7 @@ from costeer.drivers.arm import ArmCommand, ArmParameters
 from costeer.drivers.decision import CHANGING, CRUISING
 from costeer.drivers.driver import Action
 from costeer.drivers.longitudinal import Pedals
-from costeer.loop.events import EventState, initial_events, step_events
+from costeer.loop.events import EventState, initial_events, lead_of, step_events
 from costeer.loop.step import (
     DT,
     LoopParameters,
@@ -217,6 +217,7 @@ def _sample(
         motor_torque=motion.plant.world.column.motor_torque,
         action=action,
         events=state.events,
+        lead=lead_of(state.events, measurement.longitudinal_position),
     )
 
 

@@ -24,8 +24,9 @@ from costeer.loop.person import (
     initial_state,
 )
 from costeer.loop.real_wheel import WheelInput, wheel_step
-from costeer.loop.rows import ROW_COLUMNS, row
+from costeer.loop.rows import fill_row
 from costeer.loop.step import LoopParameters
+from costeer.records.row import ROW_COLUMNS
 from costeer.sensing.torque_observer import (
     TorqueObserverParameters,
     WheelMotion,
@@ -134,7 +135,7 @@ def control_tick(
     pack(state, new_state)
     pack(motion, counted_from_here(now))
     pack(held, kept)
-    pack(out, row(sample))
+    fill_row(out, sample)
 
 
 @entry

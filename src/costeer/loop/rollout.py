@@ -15,21 +15,23 @@ from numpy.typing import NDArray
 from costeer.base import array as xp
 from costeer.base.array import Flag, Real, compiled
 from costeer.base.entry import entry
-from costeer.base.packing import pack, packed, unpack
+from costeer.base.packing import packed, unpack
 from costeer.drivers.decision import time_to_crossing
 from costeer.drivers.driver import DriverNoise
 from costeer.intention.features import IntentionSample, facing
 from costeer.intention.wavefront import WavefrontState, WavefrontWeights, advance
-from costeer.loop.rows import ROW_COLUMNS, Row, row
+from costeer.loop.rows import fill_row
 from costeer.loop.step import (
     DT,
     LoopParameters,
     LoopState,
+    Sample,
     initial_state,
     planned_to_cross,
     sense,
     step,
 )
+from costeer.records.row import ROW_COLUMNS
 from costeer.sensing.measurement import Measurement
 
 INTENTION_OFF = 0
@@ -113,8 +115,8 @@ def tick(
     weights: WavefrontWeights,
     memory: WavefrontState,
     noise: DriverNoise,
-) -> tuple[LoopState, Row]:
-    """One control step with its sample, its verdict and its row."""
+) -> tuple[LoopState, Sample]:
+    """One control step with its verdict and its sample."""
     measurement = sense(parameters, state)
     probability = math.nan
     if script.intention == INTENTION_SCRIPTED:
@@ -122,8 +124,7 @@ def tick(
     if script.intention == INTENTION_NETWORK:
         probability = advance(weights, memory, intention_sample(measurement))
     asked = requested(script.trigger_times, state.time)
-    new_state, sample = step(parameters, state, measurement, probability, asked, noise)
-    return new_state, row(sample)
+    return step(parameters, state, measurement, probability, asked, noise)
 
 
 @compiled
@@ -148,8 +149,8 @@ def run(
     state = initial_state(parameters)
     for k in range(len(noise)):
         drawn = unpack(_NOISE, noise[k])
-        state, filled = tick(parameters, state, script, weights, memory, drawn)
-        pack(rows[k], filled)
+        state, sample = tick(parameters, state, script, weights, memory, drawn)
+        fill_row(rows[k], sample)
         if state.world.vehicle.longitudinal_position >= parameters.road.length:
             return k + 1
     return len(noise)

@@ -26,7 +26,13 @@ from costeer.drivers.driver import (
     Perception,
 )
 from costeer.drivers.gaze import head_yaw
-from costeer.loop.events import EventState, initial_events, step_events
+from costeer.loop.events import (
+    EventState,
+    Lead,
+    initial_events,
+    lead_of,
+    step_events,
+)
 from costeer.plant import world
 from costeer.plant.parameters import CarParameters, ColumnParameters, RoadParameters
 from costeer.plant.road import cruising_lane, lane_centre
@@ -124,6 +130,7 @@ class Sample(NamedTuple):
         motor_torque: Guidance torque that the motor gives [N·m].
         action: Of the driver.
         events: Leader and event zone.
+        lead: The leader as the record shows it.
     """
 
     time: Real
@@ -132,6 +139,7 @@ class Sample(NamedTuple):
     motor_torque: Real
     action: Action
     events: EventState
+    lead: Lead
 
 
 @compiled
@@ -357,6 +365,7 @@ def step(
         motor_torque=state.world.column.motor_torque,
         action=action,
         events=state.events,
+        lead=lead_of(state.events, measurement.longitudinal_position),
     )
     events = step_events(
         parameters.traffic,

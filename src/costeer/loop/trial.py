@@ -9,7 +9,6 @@ from importlib import metadata as distribution
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from costeer.base.array import Real
 from costeer.drivers.population import POPULATION_VERSION
@@ -23,7 +22,6 @@ from costeer.intention.wavefront import initial_state as network_memory
 from costeer.intention.weights import IntentionNetwork, load_weights
 from costeer.loop.noise import driver_noise
 from costeer.loop.rollout import Script, rollout
-from costeer.loop.rows import ROW_COLUMNS
 from costeer.loop.scenario import (
     INTENTIONS,
     TrialSetup,
@@ -31,25 +29,12 @@ from costeer.loop.scenario import (
     loop_parameters,
 )
 from costeer.loop.step import DT, LoopParameters
-from costeer.records.columns import COLUMNS, MODES, Column, TrialRecord
+from costeer.records.columns import TrialRecord
+from costeer.records.metadata import RECORD_VERSION
+from costeer.records.row import record_columns
 
 SLOWEST_SHARE = 0.5
 """A trial ends at the latest when a car at this share of its speed would arrive."""
-
-GUIDANCE_COLUMNS = (
-    "target_lane",
-    "estimated_driver_torque",
-    "instructed_torque",
-    "haptic_gain",
-    "lateral_error",
-    "heading_error_rate",
-    "guidance_pseudo_work",
-    "driver_pseudo_work",
-    "torque_agreement",
-    "consistent",
-    "target_lateral_position",
-)
-"""Columns that are empty without assistance."""
 
 
 @cache
@@ -132,38 +117,6 @@ def simulate_trial(
     )
 
 
-def record_columns(
-    rows: NDArray[np.float64], assisted: bool | NDArray[np.bool_]
-) -> dict[str, NDArray[Any]]:
-    """Rows of the loop as the columns of a record.
-
-    Args:
-        rows: In the order of `ROW_COLUMNS`, shape `(time, column)`.
-        assisted: Without assistance the guidance columns are empty; for all rows, or
-            one flag for each, shape `(time,)`.
-    """
-    helped = np.broadcast_to(assisted, len(rows))
-    columns = {}
-    for column in COLUMNS:
-        values = np.ascontiguousarray(rows[:, ROW_COLUMNS.index(column.name)])
-        if column.name == "mode":
-            columns["mode"] = np.array(MODES)[values.astype(int) * helped]
-            continue
-        if column.name in GUIDANCE_COLUMNS:
-            values = np.where(helped, values, np.nan)
-        columns[column.name] = _as_kind(column, values)
-    return columns
-
-
-def _as_kind(column: Column, values: NDArray[np.float64]) -> NDArray[Any]:
-    """One column in the type that the record keeps it in; NaN becomes a null."""
-    if column.kind == "float64":
-        return values
-    missing = np.isnan(values)
-    whole = np.where(missing, 0.0, values).astype(column.kind)
-    return np.ma.MaskedArray(whole, mask=missing) if column.nullable else whole
-
-
 def trial_metadata(
     setup: TrialSetup, parameters: LoopParameters, network_hash: str | None
 ) -> dict[str, object]:
@@ -191,6 +144,8 @@ def trial_metadata(
         "configuration_hash": hashlib.sha256(text.encode()).hexdigest(),
         "driver_torque_source": "simulated",
         "git_revision": git_revision(),
+        "driver_kind": setup.driver,
+        "record_version": RECORD_VERSION,
     }
 
 

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from costeer.base.packing import packed, unpack
 from costeer.loop.step import LoopParameters
 from costeer.loop.trial import shipped_network, trial_metadata
+from costeer.records.metadata import PERSON
 from costeer.runtime.frame import ENDED, PLACE, RUNNING
 from costeer.runtime.setup import DriveSetup, drive_parameters
 from costeer.runtime.shared import Shared
@@ -41,6 +42,7 @@ def drive_metadata(
         **described,
         "participant": setup.participant,
         "driver": f"person, {hands}",
+        "driver_kind": PERSON,
         "driver_torque_source": torque_source(setup),
         "intention_source": setup.intention,
         "head_tracker": None if setup.head is None else setup.head.tracker.kind,

@@ -25,8 +25,9 @@ from costeer.loop.scenario import (
     loop_parameters,
 )
 from costeer.loop.step import DT
-from costeer.loop.trial import SLOWEST_SHARE, idle_weights, record_columns
+from costeer.loop.trial import SLOWEST_SHARE, idle_weights
 from costeer.records.columns import TrialRecord
+from costeer.records.row import record_columns
 from costeer.study.definitions import Columns, Measure
 from costeer.study.jobs import run_jobs
 from costeer.study.segments import Segments

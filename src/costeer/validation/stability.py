@@ -30,11 +30,11 @@ from costeer.loop.rollout import (
     Script,
     rollout,
 )
-from costeer.loop.rows import ROW_COLUMNS
 from costeer.loop.scenario import TrialSetup, loop_parameters
 from costeer.loop.step import DT, LoopParameters
 from costeer.loop.trial import idle_weights, simulate_trial
 from costeer.plant.parameters import CARS, RoadParameters
+from costeer.records.row import ROW_COLUMNS
 from costeer.validation.driver_loop import (
     least_damped,
     poles,

@@ -17,7 +17,7 @@ from costeer.base.packing import packed
 from costeer.methods.registry import METHODS, method_named
 from costeer.plant.parameters import wheelbase
 from costeer.runtime.drive import Drive, Listener
-from costeer.runtime.frame import FRAME_COLUMNS, PLACE
+from costeer.runtime.frame import FRAME, PLACE
 from costeer.runtime.patience import PAGE_PATIENCE
 from costeer.runtime.setup import PLANT_DT, DriveSetup, drive_parameters
 from costeer.runtime.stream import Marker
@@ -36,6 +36,7 @@ from costeer.web.messages import (
     Set,
     Start,
     Stop,
+    told_of,
 )
 from costeer.web.session import Broadcast, Role
 
@@ -156,7 +157,7 @@ class DriveOnPages:
         road, car = parameters.road, parameters.car
         return {
             "mode": "drive",
-            "columns": list(FRAME_COLUMNS),
+            **told_of(FRAME),
             "rate": FRAME_RATE,
             "road": road._asdict(),
             "car": {

@@ -8,8 +8,10 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
+
+from costeer.records.columns import Column
 
 LARGEST_MESSAGE = 1024
 """Size of a message [bytes]."""
@@ -285,6 +287,14 @@ def _check_names(
     extra = [_shown(name) for name in given if name not in wanted]
     if extra:
         raise ValueError(f"the message has an unknown field {extra[0]}; leave it out")
+
+
+def told_of(columns: Sequence[Column]) -> dict[str, object]:
+    """What the page is told of the numbers of a frame."""
+    return {
+        "columns": [column.name for column in columns],
+        "stepped": [column.name for column in columns if column.stepped],
+    }
 
 
 def encoded(message: dict[str, object]) -> str:

@@ -59,7 +59,7 @@ export class Drive {
   /** Take over a hello: the first, and each one after a lost connection. */
   greet(hello) {
     this.hello = hello;
-    this.columns = new Columns(hello.columns);
+    this.columns = new Columns(hello.columns, hello.stepped);
     this.buffer = new StateBuffer(this.columns, hello.rate ?? 60);
     // A force-feedback wheel is a gamepad for the browser too; the server reads it better.
     this.controls.mayUseGamepad = hello.input !== "wheel";
