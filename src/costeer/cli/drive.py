@@ -158,14 +158,9 @@ def send_to_lsl(session: DriveOnPages) -> None:
     import time
 
     from costeer.export.lsl import TrialOutlet, lsl_clock
-    from costeer.records.columns import COLUMNS_BY_NAME
-    from costeer.runtime.frame import FRAME_COLUMNS, PLACE
+    from costeer.runtime.frame import FRAME, PLACE
 
-    units = {
-        name: COLUMNS_BY_NAME[name].unit if name in COLUMNS_BY_NAME else "-"
-        for name in FRAME_COLUMNS
-    }
-    outlet = TrialOutlet(units)
+    outlet = TrialOutlet({column.name: column.unit for column in FRAME})
     later = lsl_clock() - time.perf_counter()
     session.also(
         lambda frame: outlet.push(frame.tolist(), frame[PLACE["sent_time"]] + later),

@@ -148,16 +148,16 @@ def refuse_to_replace(out: Path) -> None:
     Raises:
         ValueError: If there is a folder, or a file that is no simulated trial.
     """
-    from costeer.loop.scenario import DRIVERS
+    from costeer.records.metadata import HANDS_OFF, VIRTUAL
     from costeer.records.record import read_record
 
     if not out.exists():
         return
-    driver = ""
+    kind = ""
     if out.is_file():  # reading a device may never end
         with suppress(ValueError):
-            driver = str(read_record(out, columns=["time"]).metadata.get("driver"))
-    if not driver.startswith(DRIVERS):
+            kind = str(read_record(out, columns=["time"]).metadata["driver_kind"])
+    if kind not in (VIRTUAL, HANDS_OFF):
         raise ValueError(
             f"{out} exists and is not a simulated trial; choose another --out"
         )
