@@ -145,13 +145,12 @@ def simulate_trial(setup: TrialSetup, engine: str = "numba") -> TrialRecord:
         )
     else:
         rows = rollout(method, parameters, script, network, noise, engine)
-    return TrialRecord(
-        metadata=trial_metadata(setup, parameters, predictor),
-        columns=record_columns(
-            rows, is_assisted(setup), with_method_columns(method.columns)
-        ),
-        method_columns=method.columns,
+    columns = record_columns(
+        rows, is_assisted(setup), with_method_columns(method.columns)
     )
+    about = trial_metadata(setup, parameters, predictor)
+    about["torque_faults"] = int(np.count_nonzero(columns["torque_fault"]))
+    return TrialRecord(about, columns, method.columns)
 
 
 def trial_metadata(
