@@ -43,7 +43,8 @@ class _Listener(event.Listener):
         self._compilations.end()
 
 
-event.register("numba:compile", _Listener())
+_register: Any = event.register  # Numba has no types
+_register("numba:compile", _Listener())
 
 COMPILED_ROOMS = (
     "base",
