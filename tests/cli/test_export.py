@@ -10,7 +10,7 @@ import pytest
 
 from costeer.cli import main
 from costeer.records.arrow import to_table
-from costeer.records.columns import validated
+from costeer.records.checks import validated
 from costeer.records.record import read_record, write_record
 from tests.study.synthetic import synthetic_record
 

@@ -11,7 +11,7 @@ from costeer.cli import main
 from costeer.records.record import read_record, write_record
 from costeer.study.configuration import StudySettings
 from costeer.study.folder import locked
-from costeer.study.material import HUMAN_DRIVER, find_records
+from costeer.study.material import find_records
 from costeer.study.run import run_study
 from tests.study.fakes import contents, made_up
 
@@ -67,7 +67,7 @@ def test_answers_of_people_are_kept(whole: Path, tmp_path: Path) -> None:
     shutil.copytree(whole, folder)
     for path in find_records(folder).values():
         record = read_record(path)
-        metadata = {**record.metadata, "driver": HUMAN_DRIVER}
+        metadata = {**record.metadata, "driver_kind": "person"}
         write_record(path, record._replace(metadata=metadata))
     header, *rows = (folder / "trials.csv").read_text("utf-8").splitlines()
     text = "\n".join([f"{header},tlx_raw", *(f"{row},55" for row in rows)])

@@ -8,7 +8,7 @@ import pytest
 
 from costeer.cli import main
 from costeer.cli.trial_summary import number, print_summary
-from costeer.records.record import TrialRecord, read_record, write_record
+from costeer.records.record import read_record, write_record
 from tests.study.synthetic import synthetic_record
 
 # 200 m take 10 s; the Python engine needs no compilation.
@@ -66,9 +66,8 @@ def test_a_person_s_trial_is_never_replaced(
 ) -> None:
     out = tmp_path / "p.parquet"
     record = synthetic_record(length=1000.0)
-    write_record(
-        out, TrialRecord({**record.metadata, "driver": "human"}, record.columns)
-    )
+    about = {**record.metadata, "driver_kind": "person"}
+    write_record(out, record._replace(metadata=about))
     before = out.read_bytes()
     assert simulate(out) == 2
     assert "exists and is not a simulated trial" in capsys.readouterr().err

@@ -17,17 +17,16 @@ from numpy.typing import NDArray
 
 from costeer.controller.step import ControllerParameters
 from costeer.drivers.driver import DriverNoise
-from costeer.intention.wavefront import initial_state
 from costeer.loop.jax_rollout import Fixed, float64, jax_rollouts, trace
 from costeer.loop.noise import driver_noise
 from costeer.loop.parameters import LoopParameters
 from costeer.loop.rollout import rollout
-from costeer.loop.rows import ROW_COLUMNS
 from costeer.loop.scenario import TrialSetup, loop_parameters
 from costeer.loop.tick import INTENTION_NETWORK, INTENTION_SCRIPTED, Script
-from costeer.loop.trial import idle_weights
+from costeer.loop.trial import idle_network
 from costeer.methods.ibhs import IBHS
 from costeer.methods.interface import rule_of
+from costeer.records.row import ROW_COLUMNS
 
 ENGINES = ("python", "numba", "jax")
 STEPS = 3600
@@ -55,10 +54,8 @@ def noise(setup: TrialSetup) -> NDArray[np.float64]:
 @cache
 def rows(engine: str) -> NDArray[np.float64]:
     """A minute with scripted intention, strong guidance and an overtaking."""
-    weights = idle_weights()
-    memory = initial_state(weights)
     parameters = early_event(STRONG)
-    return rollout(IBHS, parameters, SCRIPT, weights, memory, noise(STRONG), engine)
+    return rollout(IBHS, parameters, SCRIPT, idle_network(), noise(STRONG), engine)
 
 
 def column(engine: str, name: str) -> NDArray[np.float64]:
@@ -97,10 +94,8 @@ def test_every_column_agrees_to_one_in_a_billion(engine: str) -> None:
 
 def test_another_plant_step_is_seen_as_a_difference() -> None:
     # What 1e-9 would catch: 9 plant steps in a control step instead of 8.
-    weights = idle_weights()
     finer = early_event(STRONG)._replace(plant_steps=9)
-    memory = initial_state(weights)
-    other = rollout(IBHS, finer, SCRIPT, weights, memory, noise(STRONG), "numba")
+    other = rollout(IBHS, finer, SCRIPT, idle_network(), noise(STRONG), "numba")
     assert relative_difference(other, rows("numba")).max() > 1e-6
 
 
@@ -113,14 +108,12 @@ def test_drivers_together_in_jax_drive_as_each_alone() -> None:
         SCRIPT,
         np.stack([noise(setup) for setup in others]),
     )
-    weights = idle_weights()
     for setup, drove in zip(others, together, strict=True):
         alone = rollout(
             IBHS,
             early_event(setup),
             SCRIPT,
-            weights,
-            initial_state(weights),
+            idle_network(),
             noise(setup),
             "numba",
         )
@@ -128,7 +121,6 @@ def test_drivers_together_in_jax_drive_as_each_alone() -> None:
 
 
 def test_a_road_that_ends_ends_the_trial_in_every_engine() -> None:
-    weights = idle_weights()
     parameters = early_event(STRONG)
     short = parameters._replace(road=parameters.road._replace(length=200.0))
     counts = {
@@ -137,8 +129,7 @@ def test_a_road_that_ends_ends_the_trial_in_every_engine() -> None:
                 IBHS,
                 short,
                 SCRIPT,
-                weights,
-                initial_state(weights),
+                idle_network(),
                 noise(STRONG),
                 engine,
             )
@@ -155,8 +146,7 @@ def test_jax_refuses_the_network() -> None:
             IBHS,
             early_event(STRONG),
             asked,
-            idle_weights(),
-            initial_state(idle_weights()),
+            idle_network(),
             noise(STRONG),
             "jax",
         )

@@ -14,15 +14,16 @@ from numpy.typing import NDArray
 
 from costeer.controller.step import ControllerParameters
 from costeer.drivers.driver import DriverNoise
-from costeer.intention.wavefront import initial_state
 from costeer.loop.noise import driver_noise
 from costeer.loop.parameters import LoopParameters
 from costeer.loop.rollout import rollout
-from costeer.loop.rows import ROW_COLUMNS
 from costeer.loop.scenario import TrialSetup, loop_parameters
 from costeer.loop.tick import INTENTION_SCRIPTED, Script
-from costeer.loop.trial import idle_weights
+from costeer.loop.trial import idle_network
 from costeer.methods.ibhs import IBHS
+from costeer.records.columns import COLUMNS, Column
+from costeer.records.row import ROW_COLUMNS
+from tests.records.mirror import mirrored_column
 
 SETUP = TrialSetup(
     participant=2,
@@ -34,24 +35,6 @@ SETUP = TrialSetup(
 STEPS = 5400
 SCRIPT = Script(INTENTION_SCRIPTED, 3.0, np.array([75.0]))
 
-POSITIONS = ("lateral_position", "target_lateral_position")
-LANES = ("lane", "target_lane", "lead_lane")
-SIGNED = (
-    "yaw_angle",
-    "yaw_rate",
-    "lateral_velocity",
-    "lateral_acceleration",
-    "steering_wheel_angle",
-    "steering_wheel_rate",
-    "driver_torque",
-    "estimated_driver_torque",
-    "instructed_torque",
-    "applied_torque",
-    "head_yaw",
-    "lateral_error",
-    "heading_error_rate",
-    "driver_intention",
-)
 SIGNED_DRAWS = ("near", "motor", "wander", "head_drift", "head_tracker")
 
 
@@ -91,18 +74,7 @@ def trial(mirrored: bool) -> NDArray[np.float64]:
     noise = driver_noise(SETUP.seed, SETUP.participant, SETUP.condition, STEPS)
     if mirrored:
         parameters, noise = mirrored_parameters(parameters), mirrored_noise(noise)
-    weights = idle_weights()
-    memory = initial_state(weights)
-    return rollout(IBHS, parameters, SCRIPT, weights, memory, noise, "numba")
-
-
-def mirror(name: str, values: NDArray[np.float64]) -> NDArray[np.float64]:
-    """A column as the mirrored world should show it."""
-    if name in POSITIONS:
-        return -3.5 - values
-    if name in LANES:
-        return 1.0 - values
-    return -values if name in SIGNED else values
+    return rollout(IBHS, parameters, SCRIPT, idle_network(), noise, "numba")
 
 
 def test_the_trial_changes_lanes_under_guidance_that_fades_and_returns() -> None:
@@ -112,18 +84,19 @@ def test_the_trial_changes_lanes_under_guidance_that_fades_and_returns() -> None
     assert gains.min() < 0.5
 
 
-@pytest.mark.parametrize("name", ROW_COLUMNS)
-def test_a_column_mirrors(name: str) -> None:
-    place = ROW_COLUMNS.index(name)
+@pytest.mark.parametrize("column", COLUMNS, ids=lambda column: column.name)
+def test_a_column_mirrors(column: Column) -> None:
+    place = ROW_COLUMNS.index(column.name)
     here, there = (trial(mirrored=side)[:, place] for side in (False, True))
     # Positions near 0 and near -3.5 m are rounded differently, by 4e-16; the loop damps
     # that after raising it to 2e-11 at most; no verdict may fall a step apart.
     scale = max(1.0, float(np.nanmax(np.abs(here))))
-    np.testing.assert_allclose(there, mirror(name, here), rtol=0.0, atol=1e-9 * scale)
+    wanted = mirrored_column(column, here)
+    np.testing.assert_allclose(there, wanted, rtol=0.0, atol=1e-9 * scale)
 
 
-def test_every_column_has_its_place_in_the_mirror() -> None:
-    assert {*POSITIONS, *LANES, *SIGNED} < set(ROW_COLUMNS)
-    signed = trial(mirrored=False)[:, [ROW_COLUMNS.index(name) for name in SIGNED]]
+def test_every_signed_column_is_seen_on_both_sides() -> None:
+    places = [k for k, column in enumerate(COLUMNS) if column.mirrored == "flipped"]
+    signed = trial(mirrored=False)[:, places]
     assert (signed.min(axis=0) < 0.0).all()
     assert (signed.max(axis=0) > 0.0).all()

@@ -11,7 +11,6 @@ from costeer.identification.likelihood import Evidence
 from costeer.identification.model import wheel_motion
 from costeer.identification.recording import drive_of
 from costeer.identification.stretches import changes, lane_keeping
-from costeer.intention.wavefront import initial_state as network_memory
 from costeer.loop.noise import driver_noise
 from costeer.loop.rollout import rollout
 from costeer.loop.scenario import (
@@ -21,9 +20,10 @@ from costeer.loop.scenario import (
     trial_driver,
 )
 from costeer.loop.tick import Script
-from costeer.loop.trial import idle_weights, record_columns, simulate_trial
+from costeer.loop.trial import idle_network, simulate_trial
 from costeer.methods.manual import MANUAL
 from costeer.records.columns import TrialRecord
+from costeer.records.row import record_columns
 
 FRESH_SEED = 53
 """Nothing was ever chosen on drivers of this seed."""
@@ -51,13 +51,11 @@ def recorded_with(friction: float) -> TrialRecord:
     setup = manual_setup(1, 3000.0)._replace(events=False)
     parameters = loop_parameters(setup)
     column = parameters.column._replace(friction=friction)
-    weights = idle_weights()
     rows = rollout(
         MANUAL,
         parameters._replace(column=column),
         Script(INTENTIONS["off"], setup.prediction_horizon, np.zeros(0)),
-        weights,
-        network_memory(weights),
+        idle_network(),
         driver_noise(FRESH_SEED, 1, "manual", 9000),
         "numba",
     )

@@ -19,19 +19,7 @@ from tests.identification.driving import (
     true_driver,
     with_columns,
 )
-
-ODD = (
-    "lateral_position",
-    "yaw_angle",
-    "yaw_rate",
-    "lateral_velocity",
-    "lateral_acceleration",
-    "steering_wheel_angle",
-    "steering_wheel_rate",
-    "driver_torque",
-    "head_yaw",
-)
-"""Columns that change their sign when left and right are swapped."""
+from tests.records.mirror import mirrored
 
 
 @cache
@@ -98,15 +86,10 @@ def test_the_fitted_driver_has_the_estimates_and_else_the_usual_values() -> None
     assert value_of(fit.driver, "reliance.reliance") == 0.5
 
 
-def mirrored(record: TrialRecord) -> TrialRecord:
-    """The same drive with left and right swapped; lanes are 3.5 m apart."""
-    swapped = {name: -record.columns[name] for name in ODD}
-    swapped["lateral_position"] = -3.5 - record.columns["lateral_position"]
-    return with_columns(record, **swapped)
-
-
 def test_a_mirrored_recording_mirrors_the_bias_and_nothing_else() -> None:
-    one, other = by_name(fit_of(1)), by_name(fit_driver(mirrored(recorded(1))))
+    record = recorded(1)
+    mirror = record._replace(columns=mirrored(record.columns))
+    one, other = by_name(fit_of(1)), by_name(fit_driver(mirror))
     assert one.keys() == other.keys()
     for name, estimate in one.items():
         found = other[name]

@@ -22,11 +22,11 @@ from costeer.loop.realtime import (
     person_memory,
     wheel_tick,
 )
-from costeer.loop.rows import ROW_COLUMNS
 from costeer.loop.scenario import TrialSetup, loop_parameters
 from costeer.loop.tick import REQUEST_DURATION
 from costeer.loop.trial import simulate_trial
 from costeer.methods.ibhs import IBHS
+from costeer.records.row import ROW_COLUMNS
 
 SETUP = TrialSetup(
     condition="strong-normal",

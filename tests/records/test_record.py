@@ -70,7 +70,11 @@ def values_of(column: Column, num_rows: int) -> st.SearchStrategy[np.ndarray]:
 def records(draw: st.DrawFn) -> TrialRecord:
     num_rows = draw(st.integers(1, 5))
     values = st.fixed_dictionaries({c.name: values_of(c, num_rows) for c in COLUMNS})
-    metadata = dict.fromkeys(METADATA_FIELDS, 1) | {"driver": draw(st.text())}
+    metadata = dict.fromkeys(METADATA_FIELDS, 1) | {
+        "driver": draw(st.text()),
+        "driver_kind": "person",
+        "record_version": 2,
+    }
     return TrialRecord(metadata, draw(values))
 
 
@@ -303,8 +307,9 @@ def test_a_recording_is_a_record_or_any_table(tmp_path: Path, path: Path) -> Non
     pq.write_table(table, tmp_path / "table.parquet")
     pyarrow.csv.write_csv(table, tmp_path / "table.csv")
     for name in ("table.parquet", "table.csv"):
-        metadata, columns = read_recording(tmp_path / name)
-        assert metadata == {}
+        found = read_recording(tmp_path / name)
+        columns = found.columns
+        assert found.metadata == {}
         assert list(columns) == ["t", "gear", "angle", "part", "on", "nothing"]
         np.testing.assert_array_equal(columns["angle"], [1.0, np.nan, 3.0])
         np.testing.assert_array_equal(columns["gear"], [1, 2, 3])

@@ -7,6 +7,7 @@ import signal
 import subprocess
 import sys
 import time
+from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
 import numpy as np
@@ -14,9 +15,15 @@ import pyarrow.parquet as pq
 import pytest
 
 from costeer.export.markers import markers_of
-from costeer.loop.rows import ROW_COLUMNS
 from costeer.loop.scenario import TrialSetup
-from costeer.records.record import read_record, read_recording, read_stream
+from costeer.records.columns import Column
+from costeer.records.record import (
+    read_record,
+    read_recording,
+    read_stream,
+    write_record,
+)
+from costeer.records.row import ROW_COLUMNS
 from costeer.runtime.frame import TRACE_COLUMNS
 from costeer.runtime.markers import Marker
 from costeer.runtime.recorder import drive_metadata
@@ -28,6 +35,8 @@ from costeer.runtime.stream import (
     next_free,
     record_paths,
 )
+from costeer.study.again import holds_human_trials
+from tests.study.synthetic import synthetic_record
 
 METADATA = drive_metadata(DriveSetup(trial=TrialSetup(condition="strong-normal")))
 
@@ -71,6 +80,48 @@ def test_streams_become_the_record_with_its_markers_and_the_trace(
         "trial.parquet",
         "trial.wheel.parquet",
     ]
+
+
+def test_record_of_a_drive_says_when_in_utc(tmp_path: Path) -> None:
+    noon = datetime(2026, 1, 31, 12, 0, 0, 250_000, tzinfo=UTC)
+    # Batches a quarter of a second after their first row, then one of a marker alone.
+    clock = iter(noon + timedelta(seconds=after) for after in (0.0, 60.0, 65.0))
+    paths = record_paths(tmp_path / "trial.parquet")
+    stream = RecordStream(paths, METADATA, now=clock.__next__)
+    stream.write(rows(0, 15), np.full(15, True), [])
+    stream.write(rows(15, 15), np.full(15, True), [])
+    stream.write(rows(30, 0), np.full(0, True), [{"time": 0.5, "kind": "ended"}])
+    stream.close()
+    told = read_stream(paths.stream).metadata  # also of a drive that is cut off
+    assert finish(paths, stream.num_rows)
+    assert read_record(paths.record).metadata == told
+    assert told["started_at"] == "2026-01-31T12:00:00+00:00"
+    assert told["ended_at"] == "2026-01-31T12:01:00+00:00"
+
+
+def test_study_knows_what_a_person_drove(tmp_path: Path) -> None:
+    assert METADATA["driver_kind"] == "person"
+    paths = record_paths(tmp_path / "records" / "01-strong-normal.parquet")
+    stream = RecordStream(paths, METADATA)
+    stream.write(rows(0, 15), np.full(15, True), [])
+    stream.close()
+    assert finish(paths, stream.num_rows)
+    assert holds_human_trials(tmp_path)
+    write_record(paths.record, synthetic_record("strong-normal", length=900.0))
+    assert not holds_human_trials(tmp_path)
+
+
+def test_drive_whose_method_has_columns_of_its_own_keeps_them(tmp_path: Path) -> None:
+    integral = Column("method_integral", "m·s", "float64", "of the error", stepped=True)
+    made = np.column_stack([rows(0, 15), np.arange(15.0), np.full(15, 7.0)])
+    paths = record_paths(tmp_path / "trial.parquet")
+    stream = RecordStream(paths, METADATA, [integral])
+    stream.write(made, np.full(15, True), [])
+    stream.close()
+    assert finish(paths, stream.num_rows)
+    record = read_record(paths.record)
+    assert record.method_columns == (integral,)
+    np.testing.assert_array_equal(record.columns["method_integral"], np.arange(15.0))
 
 
 def test_drive_that_never_began_leaves_nothing(tmp_path: Path) -> None:

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from costeer.loop.rows import ROW_COLUMNS
 from costeer.loop.scenario import TrialSetup
 from costeer.loop.trial import simulate_trial
 from costeer.plant.parameters import RoadParameters
+from costeer.records.row import ROW_COLUMNS
 from costeer.runtime.frame import FRAME_COLUMNS, PLACE
 from costeer.runtime.verdicts import Reader
 

@@ -60,15 +60,3 @@ def duration_above_yaw(duration: float, threshold: float = radians(0.5)) -> floa
 def peak_yaw(duration: float) -> float:
     """Largest yaw of a quintic change [rad]: lateral speed 1.875 d/T."""
     return atan(1.875 * WIDTH / duration / SPEED)
-
-
-def mirrored(columns: Columns) -> Columns:
-    """The same drive with left and right swapped, about the line between the lanes."""
-    flipped = {
-        name: -columns[name]
-        for name in ("yaw_angle", "steering_wheel_angle", "steering_wheel_rate")
-        if name in columns
-    }
-    return (
-        columns | flipped | {"lateral_position": -WIDTH - columns["lateral_position"]}
-    )

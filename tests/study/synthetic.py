@@ -275,4 +275,6 @@ def _metadata(condition: str, participant: int, seed: int) -> dict[str, object]:
         "configuration_hash": "0" * 16,
         "driver_torque_source": "simulated",
         "git_revision": "unknown",
+        "driver_kind": "virtual",
+        "record_version": 2,
     }

@@ -18,7 +18,8 @@ from costeer.study.detection import (
     lead_time,
     num_missed,
 )
-from tests.study.shapes import Columns, changes, mirrored
+from tests.records.mirror import mirrored
+from tests.study.shapes import Columns, changes
 
 # Crossings at 13 s to the right and 33 s to the left.
 PLAN = [(10.0, 6.0, RIGHT), (30.0, 6.0, LEFT)]
@@ -130,7 +131,6 @@ def test_no_trigger_is_counted_while_a_path_is_followed() -> None:
 def test_a_mirrored_drive_is_judged_the_same() -> None:
     columns = decided(drive(10.5, 31.0, 50.0), (8.0, 17.0, RIGHT), (28.0, 37.0, LEFT))
     other = mirrored(columns)
-    other["driver_intention"] = -columns["driver_intention"]
     here, there = judged(columns).triggers, judged(other).triggers
     assert [t.verdict for t in here] == [TRUE, TRUE, FALSE]
     assert [t.verdict for t in there] == [t.verdict for t in here]

@@ -27,7 +27,7 @@ from costeer.pages.style import (
 from costeer.study.figures import bars, detection, signals, trajectories, workload
 from costeer.study.figures.catalogue import FIGURE_NAMES, draw_figures
 from costeer.study.figures.colours import condition_colour
-from costeer.study.material import HUMAN_DRIVER, StudyMaterial
+from costeer.study.material import StudyMaterial
 from costeer.study.quantities import QUANTITIES, WORKLOAD
 
 UNIT = re.compile(r"\[[^\]]+\]")
@@ -220,7 +220,7 @@ def test_virtual_drivers_have_no_workload(material: StudyMaterial) -> None:
 
 
 def as_people(material: StudyMaterial) -> StudyMaterial:
-    metadata = tuple({**each, "driver": HUMAN_DRIVER} for each in material.metadata)
+    metadata = tuple({**each, "driver_kind": "person"} for each in material.metadata)
     return material._replace(metadata=metadata)
 
 

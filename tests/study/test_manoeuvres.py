@@ -19,12 +19,12 @@ from costeer.study.manoeuvres import (
     steering_velocity_rms,
 )
 from costeer.study.segments import LaneChange, Segments, segment
+from tests.records.mirror import mirrored
 from tests.study.shapes import (
     Columns,
     changes,
     duration_above_speed,
     duration_above_yaw,
-    mirrored,
 )
 
 

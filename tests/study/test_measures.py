@@ -12,7 +12,7 @@ from costeer.records.columns import TrialRecord
 from costeer.study.definitions import MeasureParameters
 from costeer.study.measures import lane_change_rows, strength, trial_row
 from costeer.study.trial_measures import prepare, trial_measures
-from tests.study.shapes import mirrored
+from tests.records.mirror import mirrored
 from tests.study.synthetic import CONDITIONS, synthetic_record
 
 # Columns that spec and report rely on; more may follow.

@@ -12,7 +12,7 @@ import pandas as pd
 import pytest
 
 from costeer.records.record import read_record, write_record
-from costeer.study.material import HUMAN_DRIVER, find_records
+from costeer.study.material import find_records
 from costeer.study.report import write_report
 from costeer.study.trial_tables import LANE_CHANGES_FILE, TRIALS_FILE
 
@@ -119,7 +119,7 @@ def people(study_folder: Path, tmp_path: Path) -> Path:
     folder = part(study_folder, tmp_path / "people", lambda who, _: who < 3)
     for path in find_records(folder).values():
         record = read_record(path)
-        metadata = {**record.metadata, "driver": HUMAN_DRIVER}
+        metadata = {**record.metadata, "driver_kind": "person"}
         write_record(path, record._replace(metadata=metadata))
     trials = pd.read_csv(folder / TRIALS_FILE)
     trials["tlx_raw"] = 40.0 + trials["participant"] + trials["order"]

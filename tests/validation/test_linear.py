@@ -12,16 +12,15 @@ from numpy.typing import NDArray
 from scipy.linalg import expm
 
 from costeer.controller.step import ControllerParameters
-from costeer.intention.wavefront import initial_state
 from costeer.loop.noise import driver_noise
 from costeer.loop.parameters import DT, LoopParameters
 from costeer.loop.rollout import rollout
-from costeer.loop.rows import ROW_COLUMNS
 from costeer.loop.scenario import TrialSetup, loop_parameters
 from costeer.loop.tick import INTENTION_OFF, Script
-from costeer.loop.trial import idle_weights
+from costeer.loop.trial import idle_network
 from costeer.methods.ibhs import IBHS
 from costeer.plant.parameters import CARS, CarParameters
+from costeer.records.row import ROW_COLUMNS
 from costeer.validation.linear import (
     LinearLoop,
     closed_loop,
@@ -71,13 +70,11 @@ def simulated(
     method = parameters.controller
     if not compensated:
         method = method._replace(column=smooth)
-    weights = idle_weights()
     rows = rollout(
         IBHS,
         parameters._replace(column=smooth, controller=method),
         Script(INTENTION_OFF, 3.0, np.zeros(0)),
-        weights,
-        initial_state(weights),
+        idle_network(),
         driver_noise(1, 1, "hands-off", round(seconds / DT)),
         "numba",
     )

@@ -11,16 +11,15 @@ import pytest
 
 from costeer.drivers.driver import DriverParameters
 from costeer.drivers.population import participant_driver
-from costeer.intention.wavefront import initial_state as network_memory
 from costeer.loop.noise import driver_noise
 from costeer.loop.parameters import DT, LoopParameters
 from costeer.loop.rollout import rollout
-from costeer.loop.rows import ROW_COLUMNS
 from costeer.loop.scenario import PILOT_SEED, TrialSetup, loop_parameters
 from costeer.loop.tick import INTENTION_OFF, Script
-from costeer.loop.trial import idle_weights, simulate_trial
+from costeer.loop.trial import idle_network, simulate_trial
 from costeer.methods.manual import MANUAL
 from costeer.plant.parameters import CARS
+from costeer.records.row import ROW_COLUMNS
 from costeer.validation.driver_loop import (
     STATES,
     least_damped,
@@ -216,9 +215,7 @@ def lane_position(number: int, friction: float) -> Signal:
     )
     noise = driver_noise(PILOT_SEED, number, "friction", round(550.0 / DT))
     script = Script(INTENTION_OFF, 3.0, np.empty(0))
-    weights = idle_weights()
-    memory = network_memory(weights)
-    rows = rollout(MANUAL, parameters, script, weights, memory, noise, "numba")
+    rows = rollout(MANUAL, parameters, script, idle_network(), noise, "numba")
     return rows[round(10.0 / DT) :, ROW_COLUMNS.index("lateral_position")]
 
 

@@ -27,6 +27,12 @@ from costeer.web.messages import (
 )
 from tests.runtime.rig import drive_setup
 
+STEPPED = """
+lane target_lane consistent intention mode event driver_intention lead_lane
+head_yaw_valid run_state fault input_sequence wheel_time sent_time strength_factor
+condition indicator
+"""
+
 
 class Sent:
     """A drive that takes down what it is asked for."""
@@ -142,6 +148,7 @@ def test_hello_names_every_number_of_a_frame_and_hides_what_participants_may_not
 ) -> None:
     driver, experimenter = session.hello("driver"), session.hello("experimenter")
     assert driver["columns"] == list(FRAME_COLUMNS)
+    assert driver["stepped"] == STEPPED.split()
     assert driver["tunables"] == []
     assert driver["show_signals"] is False
     assert experimenter["show_signals"] is True

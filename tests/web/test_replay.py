@@ -8,8 +8,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from costeer.loop.rows import ROW_COLUMNS
-from costeer.records.record import COLUMN_NAMES, MODES, TrialRecord
+from costeer.records.record import COLUMN_NAMES, MODES, Column, TrialRecord
+from costeer.records.row import ROW_COLUMNS
 from costeer.web.app import replay_app
 from costeer.web.replay import NEEDED, Replay, replay_of
 from tests.study.synthetic import synthetic_record
@@ -88,6 +88,30 @@ def test_hello_describes_the_trial(record: TrialRecord, replay: Replay) -> None:
         "length": 8000.0,
         "overtaking_side": -1.0,
     }
+
+
+def test_the_page_is_told_what_jumps_between_two_samples(replay: Replay) -> None:
+    assert replay.hello["stepped"] == [
+        "lane",
+        "target_lane",
+        "consistent",
+        "intention",
+        "mode",
+        "event",
+        "driver_intention",
+        "lead_lane",
+        "head_yaw_valid",
+        "torque_fault",
+    ]
+
+
+def test_columns_of_the_method_are_shown(record: TrialRecord) -> None:
+    phase = Column("method_phase", "-", "string", "", stepped=True, labels=("a", "b"))
+    values = np.where(np.arange(len(record.columns["time"])) < 2, "a", "b")
+    columns = record.columns | {"method_phase": values}
+    replay = replay_of(TrialRecord(record.metadata, columns, (phase,)), "t")
+    assert rows_of(replay)["method_phase"][:4].tolist() == [0.0, 0.0, 1.0, 1.0]
+    assert "method_phase" in replay.hello["stepped"]  # type: ignore[operator]  # a list
 
 
 def test_markers_come_by_time_with_their_fields_and_in_words(replay: Replay) -> None:

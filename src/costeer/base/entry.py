@@ -18,14 +18,33 @@ from pathlib import Path
 from typing import Any, TypeVar, cast
 
 import numba
+from numba.core import event
 from numba.core.caching import FunctionCache
 
+from costeer.base.notice import Compilations
 from costeer.base.plugins import is_interactive
 from costeer.base.plugins import source_hash as plugin_hash
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 _KEPT_FOLDERS = 3
 _settings = cast("Any", numba.config)  # Any: Numba sets its attributes at import
+
+
+class _Listener(event.Listener):
+    """Passes on when Numba begins to compile, and when it is done."""
+
+    def __init__(self) -> None:
+        self._compilations = Compilations()
+
+    def on_start(self, event: Any) -> None:
+        self._compilations.begin()
+
+    def on_end(self, event: Any) -> None:
+        self._compilations.end()
+
+
+_register: Any = event.register  # Numba has no types
+_register("numba:compile", _Listener())
 
 COMPILED_ROOMS = (
     "base",

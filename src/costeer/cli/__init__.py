@@ -16,6 +16,7 @@ from typing import Annotated
 
 import typer
 
+from costeer.cli.compiling import announce
 from costeer.cli.errors import exit_code_of
 from costeer.cli.group import LazyGroup
 
@@ -29,6 +30,7 @@ class CommandGroup(LazyGroup):
         "study": "Run the whole experiment with virtual drivers, then the report.",
         "simulate": "Simulate one trial, write its record and tell what happened.",
         "drivers": "Draw, plot, validate and fit virtual drivers.",
+        "parameters": "List every parameter that --set can change.",
         "train": "Fit the intention network on records.",
         "evaluate": "Judge the intention network on records or a table.",
         "analyse": "Compute driving measures from records or a table.",
@@ -81,6 +83,7 @@ def main(arguments: list[str] | None = None) -> int:
     """
     words = sys.argv[1:] if arguments is None else arguments
     _open_closed_streams()
+    announce()
     # It warns at length where the home folder cannot be written, then works.
     logging.getLogger("matplotlib").setLevel(logging.ERROR)
     command = typer.main.get_command(app)

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from costeer.cli import plug_ins
 from costeer.cli.console import note
 from costeer.cli.units import parse_speed
 
@@ -24,7 +25,7 @@ def drive(
     condition: Annotated[
         str, typer.Option(help="manual, or strong or weak with a duration.")
     ] = "strong-normal",
-    method: Annotated[str, typer.Option(help="Guidance, unless manual.")] = "ibhs",
+    method: plug_ins.Method = "ibhs",
     record: Annotated[
         Path | None, typer.Option(help="Record to write, FILE.parquet.")
     ] = None,
@@ -59,7 +60,11 @@ def drive(
             help="At the start [m/s], or with its unit: 70km/h.",
         ),
     ] = 70 / 3.6,
-    car: Annotated[str, typer.Option(help="default, compact or large.")] = "default",
+    car: plug_ins.Car = "default",
+    predictor: plug_ins.PredictorName = "gru",
+    weights: plug_ins.Weights = None,
+    assignments: plug_ins.Assignments = None,
+    parameters: plug_ins.ParameterFile = None,
     events: Annotated[
         bool, typer.Option("--events/--no-events", help="Leaders to overtake.")
     ] = True,
@@ -91,6 +96,7 @@ def drive(
         costeer drive --condition weak-gentle --record out/me.parquet
     """
     from costeer.cli.devices import chosen_head, chosen_wheel, pseudonym_number
+    from costeer.loop.inputs import car_of
     from costeer.loop.scenario import TrialSetup
     from costeer.runtime.setup import DriveSetup
     from costeer.runtime.stream import check_free
@@ -107,8 +113,11 @@ def drive(
         seed=seed,
         length=length,
         speed=speed,
-        car=car,
+        car=car_of(car),
         events=events,
+        predictor=predictor,
+        weights=plug_ins.weights_path(weights),
+        parameters=plug_ins.chosen_values(parameters, assignments),
     )
     chosen = chosen_wheel(wheel)
     setup = DriveSetup(
@@ -158,14 +167,9 @@ def send_to_lsl(session: DriveOnPages) -> None:
     import time
 
     from costeer.export.lsl import TrialOutlet, lsl_clock
-    from costeer.records.columns import COLUMNS_BY_NAME
-    from costeer.runtime.frame import FRAME_COLUMNS, PLACE
+    from costeer.runtime.frame import FRAME, PLACE
 
-    units = {
-        name: COLUMNS_BY_NAME[name].unit if name in COLUMNS_BY_NAME else "-"
-        for name in FRAME_COLUMNS
-    }
-    outlet = TrialOutlet(units)
+    outlet = TrialOutlet({column.name: column.unit for column in FRAME})
     later = lsl_clock() - time.perf_counter()
     session.also(
         lambda frame: outlet.push(frame.tolist(), frame[PLACE["sent_time"]] + later),

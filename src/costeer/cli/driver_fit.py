@@ -17,7 +17,9 @@ if TYPE_CHECKING:
     from costeer.validation.fitted import Check
 
 
-def show_fit(path: Path, as_json: bool, jobs: int | None, plot: Path | None) -> None:
+def show_fit(
+    path: Path, as_json: bool, jobs: int | None, plot: Path | None, out: Path | None
+) -> None:
     """Fit a driver, check the fit by simulation, print and draw both.
 
     Args:
@@ -25,6 +27,7 @@ def show_fit(path: Path, as_json: bool, jobs: int | None, plot: Path | None) -> 
         as_json: Print JSON instead of tables.
         jobs: Trials at a time; as many as processors if None.
         plot: Draw the estimates into this SVG, if given.
+        out: Write the driver into this YAML file, if given.
 
     Raises:
         ValueError: If the recording cannot be fitted.
@@ -36,6 +39,8 @@ def show_fit(path: Path, as_json: bool, jobs: int | None, plot: Path | None) -> 
     from costeer.validation.fitted import REPEATS, check_fit
 
     refuse_bad_plot(plot)
+    if out is not None and out.suffix not in (".yaml", ".yml"):
+        raise ValueError(f"--out is {str(out)!r}; a driver is a file: give NAME.yaml")
     record = read_recording(path)
     try:
         fit = fit_driver(record)
@@ -49,10 +54,28 @@ def show_fit(path: Path, as_json: bool, jobs: int | None, plot: Path | None) -> 
         checks = []
     if plot is not None:
         _draw(plot, fit, record)
+    if out is not None:
+        _write(out, fit, path)
     if as_json:
         _print_json(path, fit, checks)
     else:
         _print_tables(path, fit, checks)
+
+
+def _write(out: Path, fit: DriverFit, path: Path) -> None:
+    """Write the driver for `--driver-file`, with what the fit was made of."""
+    from costeer.drivers.population import POPULATION_VERSION
+    from costeer.loop.inputs import write_driver
+
+    out.parent.mkdir(parents=True, exist_ok=True)
+    about = {
+        "fitted_to": path.name,
+        "population": POPULATION_VERSION,
+        "lane_keeping": fit.lane_keeping,
+        "estimated": [each.name for each in fit.estimates],
+    }
+    write_driver(out, fit.driver, about)
+    note(f"wrote {out}; drive it with: costeer simulate --driver-file {out}")
 
 
 def _draw(plot: Path, fit: DriverFit, record: TrialRecord) -> None:

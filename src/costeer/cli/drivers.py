@@ -33,7 +33,8 @@ _LIST = ""
 _UNNAMED = "costeer drivers without --validate, --threshold or --fit"
 _TASKS = {
     "--fit": _Task(
-        "fits a driver to a recording", frozenset({"--plot", "--jobs", "--json"})
+        "fits a driver to a recording",
+        frozenset({"--plot", "--out", "--jobs", "--json"}),
     ),
     "--threshold": _Task(
         "drives the pilot drivers, who have a seed of their own",
@@ -65,7 +66,11 @@ def drivers(
         bool, typer.Option("--validate", help="Drive manually; M1 to M12.")
     ] = False,
     out: Annotated[
-        Path | None, typer.Option(help="With --validate: folder of the report.")
+        Path | None,
+        typer.Option(
+            help="With --validate: folder of the report; with --fit: FILE.yaml of the "
+            "driver."
+        ),
     ] = None,
     data: Annotated[
         Path | None,
@@ -135,7 +140,7 @@ def drivers(
     if fit is not None:
         from costeer.cli.driver_fit import show_fit
 
-        show_fit(fit, json, jobs, plot)
+        show_fit(fit, json, jobs, plot, out)
         return
     from costeer.cli import driver_tables as tables
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from costeer.cli import plug_ins
 from costeer.cli.console import note
 from costeer.cli.trial_summary import print_summary
 from costeer.cli.units import parse_speed
@@ -34,12 +35,20 @@ def simulate(
             help="Suggested [m/s], or with its unit: 70km/h.",
         ),
     ] = 70 / 3.6,
-    car: Annotated[str, typer.Option(help="default, compact or large.")] = "default",
+    car: plug_ins.Car = "default",
     driver: Annotated[str, typer.Option(help="virtual or hands-off.")] = "virtual",
+    driver_file: Annotated[
+        Path | None,
+        typer.Option(help="Driver of `costeer drivers --fit --out`, FILE.yaml."),
+    ] = None,
     intention: Annotated[
         str, typer.Option(help="network, scripted (the driver's own plan) or off.")
     ] = "network",
-    method: Annotated[str, typer.Option(help="Guidance, unless manual.")] = "ibhs",
+    method: plug_ins.Method = "ibhs",
+    predictor: plug_ins.PredictorName = "gru",
+    weights: plug_ins.Weights = None,
+    assignments: plug_ins.Assignments = None,
+    parameters: plug_ins.ParameterFile = None,
     trigger_at: Annotated[
         list[float] | None,
         typer.Option(
@@ -62,24 +71,25 @@ def simulate(
     Example:
         costeer simulate --out out/trial.parquet --condition weak-gentle
         costeer simulate --out out/a.parquet --driver hands-off --trigger-at 20
+        costeer simulate --out out/b.parquet --method my_method.py
     """
+    from costeer.loop.inputs import car_of, read_driver
     from costeer.loop.scenario import TrialSetup
-    from costeer.methods.conditions import MANUAL
     from costeer.methods.conditions import condition as condition_named
 
-    chosen = condition_named(condition)
     setup = TrialSetup(
         participant=participant,
         seed=seed,
-        condition=chosen.name,
-        strength_factor=chosen.strength_factor,
-        change_duration=chosen.change_duration,
-        method=MANUAL if chosen.name == MANUAL else method,
+        condition=condition_named(condition).name,
+        method=method,
         length=length,
         speed=speed,
-        car=car,
-        driver=driver,
+        car=car_of(car),
+        driver=driver if driver_file is None else read_driver(driver_file),
         intention=intention,
+        predictor=predictor,
+        weights=plug_ins.weights_path(weights),
+        parameters=plug_ins.chosen_values(parameters, assignments),
         trigger_times=tuple(trigger_at or ()),
         events=events,
         initial_offset=initial_offset,
@@ -148,16 +158,16 @@ def refuse_to_replace(out: Path) -> None:
     Raises:
         ValueError: If there is a folder, or a file that is no simulated trial.
     """
-    from costeer.loop.scenario import DRIVERS
+    from costeer.records.metadata import HANDS_OFF, VIRTUAL
     from costeer.records.record import read_record
 
     if not out.exists():
         return
-    driver = ""
+    kind = ""
     if out.is_file():  # reading a device may never end
         with suppress(ValueError):
-            driver = str(read_record(out, columns=["time"]).metadata.get("driver"))
-    if not driver.startswith(DRIVERS):
+            kind = str(read_record(out, columns=["time"]).metadata["driver_kind"])
+    if kind not in (VIRTUAL, HANDS_OFF):
         raise ValueError(
             f"{out} exists and is not a simulated trial; choose another --out"
         )

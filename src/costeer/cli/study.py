@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from costeer.cli import plug_ins
 from costeer.cli.console import note
 from costeer.cli.trial_progress import study_progress
 from costeer.cli.units import parse_speed
@@ -32,9 +33,7 @@ def study(
         int | None,
         typer.Option(help="Trials at a time; as many as processors if not given."),
     ] = None,
-    method: Annotated[str, typer.Option(help="Guidance of the assisted trials.")] = (
-        "ibhs"
-    ),
+    method: plug_ins.Method = "ibhs",
     intention: Annotated[
         str,
         typer.Option(help="network, or scripted: the driver's decision is known."),
@@ -48,7 +47,17 @@ def study(
             help="Suggested [m/s], or with its unit: 70km/h.",
         ),
     ] = 70 / 3.6,
-    car: Annotated[str, typer.Option(help="default, compact or large.")] = "default",
+    car: plug_ins.Car = "default",
+    driver_file: Annotated[
+        list[Path] | None,
+        typer.Option(
+            help="Driver of `costeer drivers --fit --out`; several take turns."
+        ),
+    ] = None,
+    predictor: plug_ins.PredictorName = "gru",
+    weights: plug_ins.Weights = None,
+    assignments: plug_ins.Assignments = None,
+    parameters: plug_ins.ParameterFile = None,
     report: Annotated[
         bool, typer.Option(help="Tests, figures and report.html after the tables.")
     ] = True,
@@ -62,6 +71,7 @@ def study(
     Example:
         costeer study --out out/study
         costeer study --out out/quick --participants 2 --length 2000 --no-report
+        costeer study --out out/firm --set guidance.lateral_error_gain=3
     """
     from costeer.methods.conditions import parse_conditions
     from costeer.study.configuration import StudySettings, check_settings
@@ -76,6 +86,10 @@ def study(
             length=length,
             speed=speed,
             car=car,
+            predictor=predictor,
+            weights=plug_ins.weights_path(weights) or "",
+            drivers=tuple(map(str, driver_file or ())),
+            parameters=plug_ins.chosen_values(parameters, assignments),
         )
     )
     _warn_if_unbalanced(settings)

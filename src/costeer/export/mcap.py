@@ -19,7 +19,8 @@ from numpy.typing import NDArray
 
 from costeer.base.files import replacing
 from costeer.export.markers import markers_of
-from costeer.records.columns import COLUMNS_BY_NAME, TrialRecord, check_time
+from costeer.records.checks import check_time
+from costeer.records.columns import COLUMNS, Column, TrialRecord
 from costeer.runtime.markers import Marker, Value, told
 
 SAMPLE = "costeer.TrialSample"
@@ -103,9 +104,10 @@ def _write(stream: Any, record: TrialRecord) -> None:  # Any: mcap takes any str
 
 def _write_samples(writer: Any, record: TrialRecord) -> None:  # Any: as above
     """One message for each row."""
-    fields = {name: _kind(name, array) for name, array in record.columns.items()}
-    known = {n: COLUMNS_BY_NAME[n].unit for n in fields if n in COLUMNS_BY_NAME}
-    topic = _Topic("/trial", SAMPLE, fields, known)
+    declared = {c.name: c for c in (*COLUMNS, *record.method_columns)}
+    fields = {n: _kind(declared.get(n), array) for n, array in record.columns.items()}
+    units = {name: declared[name].unit for name in fields if name in declared}
+    topic = _Topic("/trial", SAMPLE, fields, units)
     values = [_plain(record.columns[name], kind) for name, kind in fields.items()]
     _write_topic(writer, topic, zip(*values, strict=True), list(fields).index("time"))
 
@@ -204,11 +206,10 @@ def _message_class(topic: _Topic) -> tuple[Any, bytes]:  # Any: a class made at 
 
 
 # Any: the element type differs from column to column.
-def _kind(name: str, values: NDArray[Any]) -> str:
+def _kind(known: Column | None, values: NDArray[Any]) -> str:
     """Kind of the field that holds a column; decided by the column, not its values."""
     if values.dtype.kind in "US":
         return "string"
-    known = COLUMNS_BY_NAME.get(name)
     nullable = known.nullable if known else isinstance(values, np.ma.MaskedArray)
     return "bool" if values.dtype.kind == "b" and not nullable else "double"
 

@@ -15,7 +15,8 @@ from costeer.identification.signals import Drive, Signal
 from costeer.loop.parameters import DT
 from costeer.plant.parameters import CARS, ColumnParameters, RoadParameters
 from costeer.plant.road import lane_at, lane_centre
-from costeer.records.columns import COLUMNS_BY_NAME, TrialRecord, check_time, converted
+from costeer.records.checks import check_time, converted
+from costeer.records.columns import COLUMNS_BY_NAME, TrialRecord
 from costeer.records.plausible import suspicions
 
 NEEDED = (

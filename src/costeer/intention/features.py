@@ -21,6 +21,7 @@ from numpy.typing import NDArray
 
 from costeer.base import array as xp
 from costeer.base.array import Real, compiled
+from costeer.records.columns import COLUMNS_BY_NAME
 
 WINDOW_LENGTH = 180
 """Samples in a window, k of Eq. (1) [-]."""
@@ -96,7 +97,7 @@ NUM_SCALED = len(SCALED)
 NUM_INPUTS = len(INPUTS)
 _VELOCITY = FEATURES.index("longitudinal_velocity")
 _YAW = FEATURES.index("yaw_angle")
-_MIRRORED = ("head_yaw", "steering_wheel_angle", "yaw_angle")
+_MIRRORED = [n for n in FEATURES if COLUMNS_BY_NAME[n].mirrored == "flipped"]
 
 
 @compiled

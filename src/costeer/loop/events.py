@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 from costeer.base import array as xp
@@ -106,4 +107,30 @@ def leader_visible(state: EventState, position: Real) -> Flag:
     """Whether the leader is on this stretch of road: not far behind the car."""
     return state.leader.present & (
         state.leader.longitudinal_position > position - 200.0
+    )
+
+
+class Lead(NamedTuple):
+    """The leader as the record shows it; NaN where there is none to see.
+
+    Attributes:
+        distance: From the car to the leader [m].
+        velocity: Of the leader [m/s].
+        lane: Of the leader [-].
+    """
+
+    distance: Real
+    velocity: Real
+    lane: Real
+
+
+@compiled
+def lead_of(state: EventState, position: Real) -> Lead:
+    """The leader as it is seen from `position` [m]."""
+    leader, visible = state.leader, leader_visible(state, position)
+    gap = leader.longitudinal_position - position
+    return Lead(
+        distance=xp.select(visible, gap, math.nan),
+        velocity=xp.select(visible, leader.longitudinal_velocity, math.nan),
+        lane=xp.select(visible, leader.lane, math.nan),
     )

@@ -13,7 +13,7 @@ from costeer.base import array as xp
 from costeer.base.array import Flag, Real, inlined
 from costeer.controller.signals import Assistance, Request
 from costeer.drivers.driver import Action
-from costeer.loop.events import EventState, initial_events, step_events
+from costeer.loop.events import EventState, Lead, initial_events, lead_of, step_events
 from costeer.loop.parameters import DT, LoopParameters
 from costeer.methods.interface import Rule
 from costeer.plant.road import cruising_lane
@@ -67,10 +67,11 @@ class Sample(NamedTuple, Generic[S]):
         request: What was asked of the method.
         signals: Of the method.
         method: Its state after the step, for columns of its own.
-        method_fault: `NO_FAULT`, `NOT_FINITE` or `OVER_LIMIT` [-].
+        torque_fault: `NO_FAULT`, `NOT_FINITE` or `OVER_LIMIT` [-].
         motor_torque: Guidance torque that the motor gives [N·m].
         action: Of the driver.
         events: Leader and event zone.
+        lead: The leader as the record shows it.
     """
 
     time: Real
@@ -78,10 +79,11 @@ class Sample(NamedTuple, Generic[S]):
     request: Request
     signals: Assistance
     method: S
-    method_fault: Real
+    torque_fault: Real
     motor_torque: Real
     action: Action
     events: EventState
+    lead: Lead
 
 
 @inlined
@@ -155,10 +157,11 @@ def half_step(
         request=request,
         signals=signals,
         method=method_state,
-        method_fault=fault_of(signals.applied_torque, limit),
+        torque_fault=fault_of(signals.applied_torque, limit),
         motor_torque=seat.motor_torque,
         action=seat.action,
         events=state.events,
+        lead=lead_of(state.events, measurement.longitudinal_position),
     )
     events = step_events(
         parameters.traffic,

@@ -7,7 +7,7 @@ of its own that JAX does not call: here the intention is scripted or off.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from functools import cache
 from importlib import import_module
 from typing import Any, NamedTuple
@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from costeer.base.array import Real
 from costeer.drivers.driver import DriverNoise
 from costeer.loop.parameters import LoopParameters
+from costeer.loop.rows import writer_of
 from costeer.loop.step import LoopState, initial_state
 from costeer.loop.tick import INTENTION_NETWORK, Script, tick
 from costeer.methods.interface import Method, P, Rule, S, rule_of
@@ -27,6 +28,7 @@ class Fixed(NamedTuple):
     """What the compiler must know of a trial: a new value is a new compilation."""
 
     rule: Rule[Any, Any]  # Any: of any method
+    values: Callable[[Any], tuple[Any, ...]]  # Any: of a sample
     plant_steps: int
     intention: int
 
@@ -83,8 +85,8 @@ def trace(
 
     def advance(state: LoopState[Any], draws: Any) -> tuple[LoopState[Any], Any]:
         drawn = DriverNoise(*draws)
-        moved, row = tick(fixed.rule, parameters, state, script, no_network, drawn)
-        numbers = [jax.numpy.asarray(n, float) for n in jax.tree_util.tree_leaves(row)]
+        moved, sample = tick(fixed.rule, parameters, state, script, no_network, drawn)
+        numbers = [jax.numpy.asarray(n, float) for n in fixed.values(sample)]
         new_state = jax.tree_util.tree_map(_as_before, state, moved)
         position = new_state.world.vehicle.longitudinal_position
         return new_state, (position, jax.numpy.stack(numbers))
@@ -136,7 +138,12 @@ def _fixed(
             "engine 'jax' does not run the intention network; give the intention as "
             "scripted or off, or choose the engine numba or python"
         )
-    return Fixed(rule_of(method), parameters.plant_steps, script.intention)
+    return Fixed(
+        rule_of(method),
+        writer_of(method).values,
+        parameters.plant_steps,
+        script.intention,
+    )
 
 
 def _until_the_end(

@@ -22,10 +22,10 @@ from costeer.intention.features import (
 )
 from costeer.intention.predictors.chosen import Judge
 from costeer.loop.rollout import Advance
-from costeer.loop.rows import ROW_COLUMNS
 from costeer.loop.tick import INTENTION_GIVEN, Script
 from costeer.plant.parameters import RoadParameters
 from costeer.plant.road import adjacent_side
+from costeer.records.row import ROW_COLUMNS
 
 Rows = NDArray[np.float64]
 
@@ -102,6 +102,7 @@ def outside_rollout(
     verdicts: Verdicts,
     noise: Rows,
     road: RoadParameters,
+    width: int,
 ) -> Rows:
     """Run a trial step by step, asking a predictor at each.
 
@@ -111,14 +112,15 @@ def outside_rollout(
         verdicts: Of the predictor.
         noise: Random numbers, shape `(time, draw)`.
         road: Its length ends the trial.
+        width: Numbers in a row.
 
     Returns:
-        Rows in the order of `ROW_COLUMNS`, shape `(time, column)`.
+        Rows of the record's columns, shape `(time, column)`.
 
     Raises:
         ValueError: If the predictor gives no probability.
     """
-    rows = np.empty((len(noise), len(ROW_COLUMNS)))
+    rows = np.empty((len(noise), width))
     asked = script._replace(intention=INTENTION_GIVEN)
     for k in range(len(noise)):
         now = slice(k, k + 1)

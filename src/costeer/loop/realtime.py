@@ -26,7 +26,7 @@ from costeer.loop.person import (
     initial_motion,
 )
 from costeer.loop.real_wheel import WheelInput, wheel_step
-from costeer.loop.rows import ROW_COLUMNS, row
+from costeer.loop.rows import loop_rule, writer_of
 from costeer.methods.interface import (
     Method,
     P,
@@ -89,7 +89,8 @@ class PersonMemory(NamedTuple):
         given: Room for a packed `PersonInput`, shape `(input,)`.
         held: Room for a packed `PersonHeld`, shape `(held,)`.
         wheel: Room for a packed `WheelInput`, shape `(wheel,)`.
-        row: The newest row in the order of `ROW_COLUMNS`, shape `(column,)`.
+        row: The newest row, the columns of every record and those of the method,
+            shape `(column,)`.
     """
 
     parameters: NDArray[np.float64]
@@ -112,7 +113,7 @@ def person_memory(method: Method[P, S], parameters: LoopParameters[P]) -> Person
         given=packed(NOTHING_GIVEN),
         held=packed(_HELD),
         wheel=packed(_WHEEL),
-        row=np.full(len(ROW_COLUMNS), np.nan),
+        row=np.full(len(writer_of(method).columns), np.nan),
     )
 
 
@@ -136,7 +137,9 @@ def with_method(
     old = unpack(initial_control(rule_of(before), usual), memory.state)
     own = method.initial_state(parameters.controller, lane)
     return memory._replace(
-        parameters=packed(parameters), state=packed(old._replace(method=own))
+        parameters=packed(parameters),
+        state=packed(old._replace(method=own)),
+        row=np.full(len(writer_of(method).columns), np.nan),
     )
 
 
@@ -159,7 +162,7 @@ def control_tick(method: Method[P, S]) -> ControlTick:
 
 def _compiled_tick(method: Method[P, S]) -> ControlTick:
     """`control_tick`, made anew."""
-    initial_state, step = rule_of(method)
+    (initial_state, step), fill = loop_rule(method)
     like = LoopParameters(controller=usual_parameters(method))
     like_state = initial_control(rule_of(method), like)
 
@@ -184,7 +187,7 @@ def _compiled_tick(method: Method[P, S]) -> ControlTick:
         pack(state, new_state)
         pack(motion, counted_from_here(now))
         pack(held, kept)
-        pack(out, row(sample))
+        fill(out, sample)
 
     return entry_for((initial_state, step), tick)
 

@@ -16,7 +16,7 @@ from costeer.base.entry import entry_for
 from costeer.base.packing import pack, packed, unpack
 from costeer.loop.jax_rollout import jax_rollout
 from costeer.loop.parameters import LoopParameters
-from costeer.loop.rows import ROW_COLUMNS
+from costeer.loop.rows import LoopRule, loop_rule, writer_of
 from costeer.loop.step import initial_state
 from costeer.loop.tick import Network, Script, run
 from costeer.methods.interface import (
@@ -46,7 +46,7 @@ class Advance(Protocol):
 
 def _compiled_trial(method: Method[P, S]) -> Any:  # Any: a compiled function of Numba
     """The compiled trial of a method; its machine code lies in the method's folder."""
-    begin, step = rule_of(method)
+    (begin, step), fill = loop_rule(method)
     like = LoopParameters(controller=usual_parameters(method))
     like_state = initial_state(rule_of(method), like)
 
@@ -59,9 +59,9 @@ def _compiled_trial(method: Method[P, S]) -> Any:  # Any: a compiled function of
         rows: Rows,
     ) -> int:
         # A tuple of functions is made in compiled code: Numba cannot take one.
-        rule = Rule(begin, step)
+        loop = LoopRule(Rule(begin, step), fill)
         given, start = unpack(like, parameters), unpack(like_state, state)
-        end, count = run(rule, given, start, script, network, noise, rows)
+        end, count = run(loop, given, start, script, network, noise, rows)
         pack(state, end)
         return count
 
@@ -98,7 +98,7 @@ def begun(
         try:
             trial = compiled_once(_compiled_trial, method)
             count: int = trial(numbers, now, script, network, noise, rows)
-        except errors.NumbaError as error:
+        except (errors.NumbaError, AssertionError) as error:
             raise ValueError(cannot_compile(method, error)) from error
         return count
 
@@ -109,11 +109,11 @@ def _in_python(
     method: Method[P, S], parameters: LoopParameters[P], state: Any, network: Network
 ) -> Advance:
     """The trial as plain Python."""
-    rule = rule_of(method)
+    loop = loop_rule(method)
 
     def advance(script: Script, noise: Rows, rows: Rows, keep: bool = True) -> int:
         nonlocal state
-        end, count = run(rule, parameters, state, script, network, noise, rows)
+        end, count = run(loop, parameters, state, script, network, noise, rows)
         state = end if keep else state
         return count
 
@@ -139,7 +139,7 @@ def rollout(
         engine: "numba", "python" or "jax"; JAX runs no network.
 
     Returns:
-        Rows in the order of `ROW_COLUMNS`, shape `(time, column)`.
+        Rows of the record's columns, the method's own last, `(time, column)`.
 
     Raises:
         ValueError: If the engine is not known, JAX is asked for the network, or the
@@ -148,7 +148,7 @@ def rollout(
     """
     if engine == "jax":
         return jax_rollout(method, parameters, script, noise)
-    rows = np.empty((len(noise), len(ROW_COLUMNS)))
+    rows = np.empty((len(noise), len(writer_of(method).columns)))
     count = begun(method, parameters, network, engine)(script, noise, rows)
     return rows[:count]
 
@@ -159,6 +159,7 @@ def cannot_compile(method: Method[P, S], error: Exception) -> str:
     reasons = [line for line in told if not line.startswith(("-", "File", "During"))]
     return (
         f"method '{method.name}' cannot be compiled: {'; '.join(reasons[-4:])}. Each "
-        "of its functions, and each function they call, is marked @costeer.compiled; "
+        "of its functions, and each function they call, is marked @compiled; a named "
+        "tuple is made with all of its fields, or changed by record._replace(...); "
         "costeer.testing.check_method says more"
     )

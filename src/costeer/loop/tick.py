@@ -1,4 +1,4 @@
-"""One control step of a trial with its verdict and its row, and the steps in a row.
+"""One control step of a trial with its verdict, and the steps that fill its rows.
 
 The same source runs in three engines: compiled by Numba or as plain Python
 (loop/rollout.py), and traced by JAX (loop/jax_rollout.py).
@@ -14,14 +14,15 @@ from numpy.typing import NDArray
 
 from costeer.base import array as xp
 from costeer.base.array import Flag, Real, compiled, inlined
-from costeer.base.packing import pack, unpack
+from costeer.base.packing import unpack
 from costeer.controller.signals import Request
 from costeer.drivers.decision import time_to_crossing
 from costeer.drivers.driver import DriverNoise
 from costeer.intention.features import IntentionSample, facing
 from costeer.intention.wavefront import WavefrontState, WavefrontWeights, advance
+from costeer.loop.half_step import Sample
 from costeer.loop.parameters import DT, LoopParameters
-from costeer.loop.rows import Row, row
+from costeer.loop.rows import LoopRule
 from costeer.loop.step import (
     LoopState,
     own_duration,
@@ -130,8 +131,8 @@ def tick(
     script: Script,
     network: Network,
     noise: DriverNoise,
-) -> tuple[LoopState[S], Row]:
-    """One control step with its sample, its verdict and its row."""
+) -> tuple[LoopState[S], Sample[S]]:
+    """One control step with its verdict and its sample."""
     measurement = sense(parameters, state)
     probability = math.nan
     if script.intention == INTENTION_SCRIPTED:
@@ -147,13 +148,12 @@ def tick(
         requested=requested(script.trigger_times, state.control.time),
         change_duration=own_duration(parameters, state),
     )
-    new_state, sample = step(rule, parameters, state, measurement, request, noise)
-    return new_state, row(sample)
+    return step(rule, parameters, state, measurement, request, noise)
 
 
 @compiled
 def run(
-    rule: Rule[Any, S],
+    loop: LoopRule[Any, S],
     parameters: LoopParameters[Any],
     state: LoopState[S],
     script: Script,
@@ -164,7 +164,7 @@ def run(
     """Fill `rows` until the road or the noise ends; return how many were filled.
 
     Args:
-        rule: The method's functions.
+        loop: The functions of the method's loop.
         parameters: Of the trial.
         state: At the beginning.
         script: Where the crossing probability comes from.
@@ -174,8 +174,8 @@ def run(
     """
     for k in range(len(noise)):
         drawn = unpack(_NOISE, noise[k])
-        state, filled = tick(rule, parameters, state, script, network, drawn)
-        pack(rows[k], filled)
+        state, sample = tick(loop.rule, parameters, state, script, network, drawn)
+        loop.fill(rows[k], sample)
         if state.world.vehicle.longitudinal_position >= parameters.road.length:
             return state, k + 1
     return state, len(noise)

@@ -9,7 +9,6 @@ from importlib import metadata as distribution
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from costeer.base.array import Real
 from costeer.base.described import described
@@ -28,7 +27,7 @@ from costeer.loop.noise import driver_noise
 from costeer.loop.outside import Verdicts, outside_rollout
 from costeer.loop.parameters import DT, LoopParameters
 from costeer.loop.rollout import begun, rollout
-from costeer.loop.rows import ROW_COLUMNS
+from costeer.loop.rows import writer_of
 from costeer.loop.scenario import (
     INTENTIONS,
     TrialSetup,
@@ -39,25 +38,12 @@ from costeer.loop.scenario import (
 )
 from costeer.loop.tick import Network, Script
 from costeer.methods.interface import Method, method_sources
-from costeer.records.columns import COLUMNS, MODES, Column, TrialRecord
+from costeer.records.columns import TrialRecord, with_method_columns
+from costeer.records.metadata import HANDS_OFF, RECORD_VERSION, VIRTUAL
+from costeer.records.row import record_columns
 
 SLOWEST_SHARE = 0.5
 """A trial ends at the latest when a car at this share of its speed would arrive."""
-
-GUIDANCE_COLUMNS = (
-    "target_lane",
-    "estimated_driver_torque",
-    "instructed_torque",
-    "haptic_gain",
-    "lateral_error",
-    "heading_error_rate",
-    "guidance_pseudo_work",
-    "driver_pseudo_work",
-    "torque_agreement",
-    "consistent",
-    "target_lateral_position",
-)
-"""Columns that are empty without assistance."""
 
 
 @cache
@@ -149,45 +135,22 @@ def simulate_trial(setup: TrialSetup, engine: str = "numba") -> TrialRecord:
     if predictor is not None and predictor.judge is not None and engine != "jax":
         advance = begun(method, parameters, network, engine)
         verdicts = Verdicts(predictor.judge, predictor.name)
-        rows = outside_rollout(advance, script, verdicts, noise, parameters.road)
+        rows = outside_rollout(
+            advance,
+            script,
+            verdicts,
+            noise,
+            parameters.road,
+            len(writer_of(method).columns),
+        )
     else:
         rows = rollout(method, parameters, script, network, noise, engine)
-    return TrialRecord(
-        metadata=trial_metadata(setup, parameters, predictor),
-        columns=record_columns(rows, is_assisted(setup)),
+    columns = record_columns(
+        rows, is_assisted(setup), with_method_columns(method.columns)
     )
-
-
-def record_columns(
-    rows: NDArray[np.float64], assisted: bool | NDArray[np.bool_]
-) -> dict[str, NDArray[Any]]:
-    """Rows of the loop as the columns of a record.
-
-    Args:
-        rows: In the order of `ROW_COLUMNS`, shape `(time, column)`.
-        assisted: Without assistance the guidance columns are empty; for all rows, or
-            one flag for each, shape `(time,)`.
-    """
-    helped = np.broadcast_to(assisted, len(rows))
-    columns = {}
-    for column in COLUMNS:
-        values = np.ascontiguousarray(rows[:, ROW_COLUMNS.index(column.name)])
-        if column.name == "mode":
-            columns["mode"] = np.array(MODES)[values.astype(int) * helped]
-            continue
-        if column.name in GUIDANCE_COLUMNS:
-            values = np.where(helped, values, np.nan)
-        columns[column.name] = _as_kind(column, values)
-    return columns
-
-
-def _as_kind(column: Column, values: NDArray[np.float64]) -> NDArray[Any]:
-    """One column in the type that the record keeps it in; NaN becomes a null."""
-    if column.kind == "float64":
-        return values
-    missing = np.isnan(values)
-    whole = np.where(missing, 0.0, values).astype(column.kind)
-    return np.ma.MaskedArray(whole, mask=missing) if column.nullable else whole
+    about = trial_metadata(setup, parameters, predictor)
+    about["torque_faults"] = int(np.count_nonzero(columns["torque_fault"]))
+    return TrialRecord(about, columns, method.columns)
 
 
 def trial_metadata(
@@ -220,6 +183,8 @@ def trial_metadata(
         "configuration_hash": hashlib.sha256(text.encode()).hexdigest(),
         "driver_torque_source": "simulated",
         "git_revision": git_revision(),
+        "driver_kind": HANDS_OFF if setup.driver == HANDS_OFF else VIRTUAL,
+        "record_version": RECORD_VERSION,
     }
 
 

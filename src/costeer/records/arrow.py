@@ -6,26 +6,29 @@ the fields' metadata, the description of the trial in the schema's, as JSON.
 
 import json
 import math
-from collections.abc import Iterable
-from typing import Any
+from collections.abc import Iterable, Sequence
+from typing import Any, NamedTuple, cast
 
 import numpy as np
 import pyarrow as pa
 from numpy.typing import NDArray
 
+from costeer.records.checks import check_time, refuse_unknown
 from costeer.records.columns import (
+    COLUMN_NAMES,
     COLUMNS,
-    COLUMNS_BY_NAME,
-    METADATA_FIELDS,
-    MODES,
+    METHOD_PREFIX,
     Column,
+    Kind,
+    Mirrored,
     TrialRecord,
-    check_time,
+    with_method_columns,
 )
+from costeer.records.metadata import METADATA_FIELDS, upgraded
 
 METADATA_KEY = b"costeer"
 
-_ARROW_TYPES = {
+_ARROW_TYPES: dict[Kind, pa.DataType] = {
     "float64": pa.float64(),
     "int8": pa.int8(),
     "bool": pa.bool_(),
@@ -33,30 +36,55 @@ _ARROW_TYPES = {
 }
 
 
+class Described(NamedTuple):
+    """What a schema says of a trial.
+
+    Attributes:
+        metadata: Of the record, in the words of this version.
+        columns: That a record has, and those of the method in this file.
+    """
+
+    metadata: dict[str, object]
+    columns: tuple[Column, ...]
+
+
 def to_table(record: TrialRecord) -> pa.Table:
     """The Arrow table of a validated record.
 
     Raises:
-        ValueError: If a mode is unknown or the metadata does not fit into JSON.
+        ValueError: If a label is unknown or the metadata does not fit into JSON.
     """
-    arrays = [_to_arrow(column, record.columns[column.name]) for column in COLUMNS]
-    return pa.Table.from_arrays(arrays, schema=record_schema(record.metadata))
+    declared = with_method_columns(record.method_columns)
+    arrays = [_to_arrow(column, record.columns[column.name]) for column in declared]
+    schema = record_schema(record.metadata, record.method_columns)
+    return pa.Table.from_arrays(arrays, schema=schema)
 
 
-def record_schema(metadata: dict[str, object]) -> pa.Schema:
-    """Schema of a record: units in the fields, the trial's description in its own.
+def record_schema(
+    metadata: dict[str, object], method_columns: Sequence[Column] = ()
+) -> pa.Schema:
+    """Schema of a record: declarations in the fields, the trial's story in its own.
 
     Raises:
-        ValueError: If the metadata does not fit into JSON.
+        ValueError: If the metadata does not fit into JSON, or a column cannot be one of
+            a method.
     """
     fields = [
         pa.field(
             column.name,
             _ARROW_TYPES[column.kind],
             nullable=column.nullable,
-            metadata={"unit": column.unit, "description": column.description},
+            metadata={
+                "unit": column.unit,
+                "description": column.description,
+                "source": column.source,
+                "assisted_only": json.dumps(column.assisted_only),
+                "stepped": json.dumps(column.stepped),
+                "mirrored": column.mirrored,
+                "labels": "\n".join(column.labels),
+            },
         )
-        for column in COLUMNS
+        for column in with_method_columns(method_columns)
     ]
     return pa.schema(fields, metadata={METADATA_KEY: _to_json(metadata)})
 
@@ -94,14 +122,14 @@ def _plain_float(value: float) -> float | None:
 # Any, here and below: the element type differs from column to column.
 def _to_arrow(column: Column, values: NDArray[Any]) -> pa.Array:
     if column.kind == "string":
-        return _modes_to_arrow(values)
+        return _texts_to_arrow(column, values)
     plain = np.ma.getdata(values)
     data = _packed(plain) if column.kind == "bool" else pa.py_buffer(plain)
     valid = _packed(~np.ma.getmaskarray(values)) if column.nullable else None
     return _from_buffers(column.kind, plain.size, [valid, data])
 
 
-def _from_buffers(kind: str, num_rows: int, buffers: list[Any]) -> pa.Array:
+def _from_buffers(kind: Kind, num_rows: int, buffers: list[Any]) -> pa.Array:
     # Not `pa.array`, which copies and imports pandas, almost a second.
     return pa.Array.from_buffers(_ARROW_TYPES[kind], num_rows, buffers)
 
@@ -110,58 +138,109 @@ def _packed(flags: NDArray[np.bool_]) -> pa.Buffer:
     return pa.py_buffer(np.packbits(flags, bitorder="little"))
 
 
-def _modes_to_arrow(mode: NDArray[np.str_]) -> pa.Array:
-    codes = _mode_codes(mode)
-    texts = [name.encode() for name in MODES]
+def _texts_to_arrow(column: Column, values: NDArray[np.str_]) -> pa.Array:
+    codes = _codes(column, values)
+    texts = [label.encode() for label in column.labels]
     lengths = np.array([len(text) for text in texts], np.int32)[codes]
     offsets = np.concatenate([[0], np.cumsum(lengths)]).astype(np.int32)
     characters = b"".join([texts[code] for code in codes.tolist()])
     buffers = [None, pa.py_buffer(offsets), pa.py_buffer(characters)]
-    return _from_buffers("string", mode.size, buffers)
+    return _from_buffers("string", values.size, buffers)
 
 
-def _mode_codes(mode: NDArray[np.str_]) -> NDArray[np.int8]:
-    codes = np.full(mode.shape, -1, np.int8)
-    for code, name in enumerate(MODES):
-        codes[mode == name] = code
+def _codes(column: Column, values: NDArray[np.str_]) -> NDArray[np.int8]:
+    codes = np.full(values.shape, -1, np.int8)
+    for code, label in enumerate(column.labels):
+        codes[values == label] = code
     if (codes < 0).any():
         row = int(np.flatnonzero(codes < 0)[0])
         raise ValueError(
-            f"mode is {str(mode[row])!r} in row {row}, expected one of "
-            f"{', '.join(MODES)}"
+            f"{column.name} is {str(values[row])!r} in row {row}, expected one of "
+            f"{', '.join(column.labels)}"
         )
     return codes
 
 
-def from_table(table: pa.Table, wanted: list[str]) -> TrialRecord:
-    """The record in an Arrow table, with the wanted columns.
+def described(schema: pa.Schema) -> Described:
+    """What a schema says of the trial and its columns.
 
     Raises:
-        ValueError: If the description or a column is missing, a column is of the
-            wrong kind, or time is not finite and increasing.
+        ValueError: If it is none of a record, of a newer version, or has columns that
+            no record has.
     """
-    metadata = _metadata(table.schema)
-    _refuse_missing("columns", wanted, table.schema.names)
+    metadata = _metadata(schema)
+    others = [field for field in schema if field.name not in COLUMN_NAMES]
+    refuse_unknown(f.name for f in others if not f.name.startswith(METHOD_PREFIX))
+    added = [_declared(field) for field in others]
+    return Described(metadata, with_method_columns(added))
+
+
+def _declared(field: pa.Field) -> Column:
+    """A method's column as the file declares it."""
+    told = {k.decode(): v.decode() for k, v in (field.metadata or {}).items()}
+    kinds = [kind for kind, each in _ARROW_TYPES.items() if each == field.type]
+    if not kinds:
+        raise ValueError(
+            f"column {field.name!r} holds {field.type}; a method's columns hold "
+            f"{', '.join(_ARROW_TYPES)}"
+        )
+    return Column(
+        name=field.name,
+        unit=told.get("unit", "-"),
+        kind=kinds[0],
+        description=told.get("description", ""),
+        source=told.get("source", ""),
+        nullable=field.nullable,
+        assisted_only=told.get("assisted_only") == "true",
+        stepped=told.get("stepped") == "true",
+        mirrored=cast("Mirrored", told.get("mirrored", "same")),
+        labels=tuple(told.get("labels", "").splitlines()),
+    )
+
+
+def from_table(
+    table: pa.Table, about: Described, names: Sequence[str] | None = None
+) -> TrialRecord:
+    """The record in an Arrow table.
+
+    Args:
+        table: With the columns, or some of them.
+        about: What the schema of the file says.
+        names: Of the columns to take; all if None.
+
+    Raises:
+        ValueError: If a column is missing or of the wrong kind, or time is not finite
+            and increasing.
+    """
+    wanted = [c for c in about.columns if names is None or c.name in names]
+    asked = dict.fromkeys([*(c.name for c in wanted), *(names or ())])
+    late = {c.name: c for c in wanted if c.before is not None}
+    _refuse_missing("columns", asked, [*table.schema.names, *late])
     columns = {
-        name: _from_arrow(COLUMNS_BY_NAME[name], table.column(name)) for name in wanted
+        c.name: _from_arrow(c, table.column(c.name))
+        if c.name in table.schema.names
+        else np.full(table.num_rows, c.before).astype(c.kind)
+        for c in wanted
     }
     check_time(columns["time"])
-    return TrialRecord(metadata=metadata, columns=columns)
+    added = tuple(column for column in wanted if column not in COLUMNS)
+    return TrialRecord(about.metadata, columns, added)
 
 
 def _metadata(schema: pa.Schema) -> dict[str, object]:
-    described = (schema.metadata or {}).get(METADATA_KEY)
-    if described is None:
+    text = (schema.metadata or {}).get(METADATA_KEY)
+    if text is None:
         raise ValueError(
             "it has no 'costeer' metadata, so it is a plain table and no trial "
             "record; `costeer analyse` reads plain tables"
         )
     try:
-        metadata: dict[str, object] = json.loads(described)
+        metadata: dict[str, object] = json.loads(text)
     except ValueError as error:
         raise ValueError("its 'costeer' metadata is not JSON") from error
-    _refuse_missing("metadata fields", METADATA_FIELDS, metadata)
-    return metadata
+    present = upgraded(metadata)
+    _refuse_missing("metadata fields", METADATA_FIELDS, present)
+    return present
 
 
 def _refuse_missing(what: str, wanted: Iterable[str], given: Iterable[str]) -> None:

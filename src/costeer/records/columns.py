@@ -1,13 +1,23 @@
-"""What a trial record holds: its columns with units, and its metadata.
+"""What a trial record holds: its columns, each declared once.
 
-A simulated and a human trial leave the same record. Names and signs follow ISO 8855:
-left is positive, lanes count from the right, an error is car minus target.
+The compiled row (records/row.py), types and units of files (records/arrow.py), what is
+empty in manual driving, what the page draws as steps and the table of docs/records.md
+follow from `COLUMNS`. Names and signs follow ISO 8855: left is positive, lanes count
+from the right, an error is car minus target.
 """
 
-from typing import Any, NamedTuple
+from __future__ import annotations
 
-import numpy as np
+from collections.abc import Sequence
+from typing import Any, Literal, NamedTuple, TypeAlias, get_args
+
 from numpy.typing import NDArray
+
+Kind: TypeAlias = Literal["float64", "int8", "bool", "string"]
+
+Mirrored: TypeAlias = Literal["same", "flipped", "swapped", "reflected"]
+"""What becomes of a column in the mirrored world: it stays, it changes its sign, lanes
+0 and 1 change places, a position is reflected at the line between the lanes."""
 
 MANUAL = "manual"
 LANE_KEEPING = "lane_keeping"
@@ -15,7 +25,7 @@ LANE_CHANGING = "lane_changing"
 MODES = (MANUAL, LANE_KEEPING, LANE_CHANGING)
 
 METHOD_PREFIX = "method_"
-"""With what the names of columns begin that a method adds."""
+"""How the names of columns begin that a method adds to those of every record."""
 
 
 class Column(NamedTuple):
@@ -26,242 +36,296 @@ class Column(NamedTuple):
         unit: SI unit, "-" if there is none; stored in the schema.
         kind: "float64", "int8", "bool" or "string".
         description: What it is.
+        source: Dotted place of the number in the loop's sample.
         nullable: Whether a sample may be undefined. Such a column is a masked array
             in memory and has nulls in the file. Floats say NaN instead.
+        assisted_only: Whether it says nothing in manual driving, where the guidance
+            is computed and has no strength. Floats are NaN there, nullable columns
+            null, texts the first label.
+        stepped: Whether the page draws it as steps: between two samples the newer
+            one holds.
+        mirrored: What becomes of it in the mirrored world.
+        labels: Of texts, the word for each number of the sample.
+        before: What it was in files written before it was declared; None if every
+            file has it.
     """
 
     name: str
     unit: str
-    kind: str
+    kind: Kind
     description: str
+    source: str = ""
     nullable: bool = False
+    assisted_only: bool = False
+    stepped: bool = False
+    mirrored: Mirrored = "same"
+    labels: tuple[str, ...] = ()
+    before: float | None = None
 
 
 class TrialRecord(NamedTuple):
     """One trial, 60 rows a second.
 
     Attributes:
-        metadata: The fields of `METADATA_FIELDS`.
-        columns: The arrays of `COLUMNS` by name, shape `(time,)` each.
+        metadata: The fields of records/metadata.py.
+        columns: The arrays of `COLUMNS` by name, shape `(time,)` each, and those of
+            `method_columns`.
+        method_columns: What the method adds to the columns of every record.
     """
 
     metadata: dict[str, object]
     # Any: the element type differs from column to column.
     columns: dict[str, NDArray[Any]]
+    method_columns: tuple[Column, ...] = ()
 
 
-METADATA_FIELDS: tuple[str, ...] = (
-    "version",
-    "seed",
-    "participant",
-    "condition",
-    "strength_factor",
-    "change_duration",
-    "method",
-    "car",
-    "speed",
-    "driver",
-    "intention_model_hash",
-    "inconsistency_threshold",
-    "replan_gain",
-    "torque_limit",
-    "configuration",
-    "configuration_hash",
-    "driver_torque_source",
-    "git_revision",
-)
+def _number(
+    name: str, unit: str, description: str, source: str, mirrored: Mirrored = "same"
+) -> Column:
+    return Column(name, unit, "float64", description, source, mirrored=mirrored)
 
 
-def _number(name: str, unit: str, description: str) -> Column:
-    return Column(name=name, unit=unit, kind="float64", description=description)
+def _measured(
+    name: str, unit: str, description: str, mirrored: Mirrored = "same"
+) -> Column:
+    return _number(name, unit, description, f"measurement.{name}", mirrored)
 
 
-def _count(name: str, description: str, nullable: bool = False) -> Column:
-    return Column(
-        name=name, unit="-", kind="int8", description=description, nullable=nullable
-    )
-
-
-def _flag(name: str, description: str, nullable: bool = False) -> Column:
-    return Column(
-        name=name, unit="-", kind="bool", description=description, nullable=nullable
-    )
+def _guidance(
+    name: str, unit: str, description: str, source: str, mirrored: Mirrored = "same"
+) -> Column:
+    column = _number(name, unit, description, f"signals.{source}", mirrored)
+    return column._replace(assisted_only=True)
 
 
 COLUMNS: tuple[Column, ...] = (
-    _number("time", "s", "time since the start of the trial"),
-    _number("longitudinal_position", "m", "centre of gravity along the road"),
-    _number("lateral_position", "m", "from the left lane's centre, left positive"),
-    _count("lane", "lane of the centre of gravity: 0 right, 1 left"),
-    _count("target_lane", "lane the guidance steers to; null in manual", True),
-    _number("yaw_angle", "rad", "heading against the road"),
-    _number("yaw_rate", "rad/s", "time derivative of the yaw angle"),
-    _number("longitudinal_velocity", "m/s", "along the car's axis"),
-    _number("longitudinal_acceleration", "m/s²", "along the car's axis"),
-    _number("lateral_velocity", "m/s", "across the car's axis, centre of gravity"),
-    _number("lateral_acceleration", "m/s²", "across the car's axis"),
-    _number("steering_wheel_angle", "rad", "steering-wheel angle"),
-    _number("steering_wheel_rate", "rad/s", "its time derivative"),
-    _number("driver_torque", "N·m", "torque of the driver at the wheel"),
-    _number("estimated_driver_torque", "N·m", "tau'_dr of Eq. (5)"),
-    _number("instructed_torque", "N·m", "guidance before the gain, Eq. (4)"),
-    _number("applied_torque", "N·m", "guidance the motor gives, Eq. (6)"),
-    _number("haptic_gain", "-", "K_h of Eqs. (10) and (11), in [0, 1]"),
-    _number("head_yaw", "-", "head yaw normalised to [-1, 1]"),
-    _number("distance_to_adjacent_lane", "m", "to the boundary of the adjacent lane"),
-    _number("lateral_error", "m", "error at the preview point"),
-    _number("heading_error_rate", "rad/s", "yaw rate minus that of the path"),
-    _number("guidance_pseudo_work", "W", "W_hapi of Eq. (7)"),
-    _number("driver_pseudo_work", "W", "W_dr of Eq. (8)"),
-    _number("torque_agreement", "N²·m²", "S_c of Eq. (9)"),
-    _flag("consistent", "verdict of Table III; null in manual", True),
-    _number("crossing_probability", "-", "of crossing within 3 s; NaN: no verdict"),
-    _flag("intention", "debounced trigger of a lane change"),
-    Column("mode", "-", "string", "manual, lane_keeping or lane_changing"),
-    _count("event", "0, or the number of the overtaking event the car is in"),
-    _count("driver_intention", "-1 right, 0 none, +1 left; null for people", True),
-    _number("lead_distance", "m", "to the leader; NaN without one"),
-    _number("lead_velocity", "m/s", "of the leader; NaN without one"),
-    _count("lead_lane", "lane of the leader; null without one", True),
-    _number("target_lateral_position", "m", "of the path at the car"),
-    _flag("head_yaw_valid", "whether the head was tracked"),
-    _number("accelerator", "-", "pedal position in [0, 1]"),
-    _number("brake", "-", "pedal position in [0, 1]"),
+    _number("time", "s", "time since the start of the trial", "time"),
+    _measured("longitudinal_position", "m", "centre of gravity along the road"),
+    _measured(
+        "lateral_position",
+        "m",
+        "from the left lane's centre, left positive",
+        "reflected",
+    ),
+    Column(
+        "lane",
+        "-",
+        "int8",
+        "lane of the centre of gravity: 0 right, 1 left",
+        "measurement.lane",
+        stepped=True,
+        mirrored="swapped",
+    ),
+    Column(
+        "target_lane",
+        "-",
+        "int8",
+        "lane the guidance steers to; null in manual",
+        "signals.target.lane",
+        nullable=True,
+        assisted_only=True,
+        stepped=True,
+        mirrored="swapped",
+    ),
+    _measured("yaw_angle", "rad", "heading against the road", "flipped"),
+    _measured("yaw_rate", "rad/s", "time derivative of the yaw angle", "flipped"),
+    _measured("longitudinal_velocity", "m/s", "along the car's axis"),
+    _measured("longitudinal_acceleration", "m/s²", "along the car's axis"),
+    _measured(
+        "lateral_velocity",
+        "m/s",
+        "across the car's axis, centre of gravity",
+        "flipped",
+    ),
+    _measured("lateral_acceleration", "m/s²", "across the car's axis", "flipped"),
+    _measured("steering_wheel_angle", "rad", "steering-wheel angle", "flipped"),
+    _measured("steering_wheel_rate", "rad/s", "its time derivative", "flipped"),
+    _measured("driver_torque", "N·m", "torque of the driver at the wheel", "flipped"),
+    _guidance(
+        "estimated_driver_torque",
+        "N·m",
+        "tau'_dr of Eq. (5)",
+        "guidance.estimated_driver_torque",
+        "flipped",
+    ),
+    _guidance(
+        "instructed_torque",
+        "N·m",
+        "guidance before the gain, Eq. (4)",
+        "guidance.instructed_torque",
+        "flipped",
+    ),
+    _number(
+        "applied_torque",
+        "N·m",
+        "guidance the motor gives, Eq. (6)",
+        "motor_torque",
+        "flipped",
+    ),
+    _guidance(
+        "haptic_gain", "-", "K_h of Eqs. (10) and (11), in [0, 1]", "haptic_gain"
+    ),
+    _measured("head_yaw", "-", "head yaw normalised to [-1, 1]", "flipped"),
+    _measured("distance_to_adjacent_lane", "m", "to the boundary of the adjacent lane"),
+    _guidance(
+        "lateral_error",
+        "m",
+        "error at the preview point",
+        "preview.lateral_error",
+        "flipped",
+    ),
+    _guidance(
+        "heading_error_rate",
+        "rad/s",
+        "yaw rate minus that of the path",
+        "preview.heading_error_rate",
+        "flipped",
+    ),
+    _guidance(
+        "guidance_pseudo_work",
+        "W",
+        "W_hapi of Eq. (7)",
+        "consistency.guidance_pseudo_work",
+    ),
+    _guidance(
+        "driver_pseudo_work",
+        "W",
+        "W_dr of Eq. (8)",
+        "consistency.driver_pseudo_work",
+    ),
+    _guidance(
+        "torque_agreement",
+        "N²·m²",
+        "S_c of Eq. (9)",
+        "consistency.torque_agreement",
+    ),
+    Column(
+        "consistent",
+        "-",
+        "bool",
+        "verdict of Table III; null in manual",
+        "signals.consistency.consistent",
+        nullable=True,
+        assisted_only=True,
+        stepped=True,
+    ),
+    _number(
+        "crossing_probability",
+        "-",
+        "of crossing within 3 s; NaN: no verdict",
+        "request.crossing_probability",
+    ),
+    Column(
+        "intention",
+        "-",
+        "bool",
+        "debounced trigger of a lane change",
+        "signals.intention",
+        stepped=True,
+    ),
+    Column(
+        "mode",
+        "-",
+        "string",
+        "manual, lane_keeping or lane_changing",
+        "signals.target.mode",
+        assisted_only=True,
+        stepped=True,
+        labels=MODES,
+    ),
+    Column(
+        "event",
+        "-",
+        "int8",
+        "0, or the number of the overtaking event the car is in",
+        "events.event",
+        stepped=True,
+    ),
+    Column(
+        "driver_intention",
+        "-",
+        "int8",
+        "-1 right, 0 none, +1 left; null for people",
+        "action.intention",
+        nullable=True,
+        stepped=True,
+        mirrored="flipped",
+    ),
+    _number("lead_distance", "m", "to the leader; NaN without one", "lead.distance"),
+    _number("lead_velocity", "m/s", "of the leader; NaN without one", "lead.velocity"),
+    Column(
+        "lead_lane",
+        "-",
+        "int8",
+        "lane of the leader; null without one",
+        "lead.lane",
+        nullable=True,
+        stepped=True,
+        mirrored="swapped",
+    ),
+    _guidance(
+        "target_lateral_position",
+        "m",
+        "of the path at the car",
+        "target.lateral_position",
+        "reflected",
+    ),
+    Column(
+        "head_yaw_valid",
+        "-",
+        "bool",
+        "whether the head was tracked",
+        "measurement.head_yaw_valid",
+        stepped=True,
+    ),
+    _number(
+        "accelerator", "-", "pedal position in [0, 1]", "action.pedals.accelerator"
+    ),
+    _number("brake", "-", "pedal position in [0, 1]", "action.pedals.brake"),
+    Column(
+        "torque_fault",
+        "-",
+        "int8",
+        "of the torque asked for: 0 none, 1 not finite, 2 over the limit; contained",
+        "torque_fault",
+        stepped=True,
+        before=0.0,
+    ),
 )
 
 COLUMN_NAMES: tuple[str, ...] = tuple(column.name for column in COLUMNS)
 COLUMNS_BY_NAME: dict[str, Column] = {column.name: column for column in COLUMNS}
 
-_ACCEPTED_KINDS = {"float64": "f", "int8": "iu", "bool": "b", "string": "U"}
 
-
-def validated(record: TrialRecord) -> TrialRecord:
-    """The record with every column in the type of its kind, in the order of `COLUMNS`.
-
-    Raises:
-        ValueError: If a column or metadata field is missing or unknown, the lengths
-            differ, a kind is wrong, a value is undefined where it may not be, or
-            time is not finite and increasing.
-    """
-    _check_names("column", record.columns, COLUMN_NAMES, extra_allowed=False)
-    _check_names("metadata field", record.metadata, METADATA_FIELDS, extra_allowed=True)
-    columns = {
-        column.name: converted(column, record.columns[column.name])
-        for column in COLUMNS
-    }
-    _check_lengths(columns)
-    check_time(columns["time"])
-    return TrialRecord(metadata=record.metadata, columns=columns)
-
-
-def converted(column: Column, values: NDArray[Any]) -> NDArray[Any]:
-    """One column in the type of its kind; nullable ones as masked arrays.
-
-    Raises:
-        ValueError: If the values are of another kind, out of range or undefined.
-    """
-    values = np.asanyarray(values)
-    if values.ndim != 1:
-        raise ValueError(
-            f"column {column.name!r} has {values.ndim} dimensions; give one value "
-            "per row"
-        )
-    if values.dtype.kind == "U" and column.kind != "string":
-        raise ValueError(text_told(column.name, values))
-    if values.dtype.kind not in _ACCEPTED_KINDS[column.kind]:
-        raise ValueError(
-            f"column {column.name!r} holds {values.dtype}, expected {column.kind}; "
-            "undefined integers and flags are masked arrays, not NaN"
-        )
-    _check_range(column, values)
-    return _masked_or_plain(column, values)
-
-
-def text_told(name: str, values: NDArray[np.str_]) -> str:
-    """Say which cell of a column of numbers holds text."""
-    row = next((i for i, text in enumerate(values) if not _is_number(text)), 0)
-    return (
-        f"column {name!r} is {str(values[row])!r} in row {row}, expected a number with "
-        "a decimal point; mend that cell, or leave it empty if nothing is known"
-    )
-
-
-def _is_number(text: str) -> bool:
-    try:
-        float(text)
-    except ValueError:
-        return False
-    return True
-
-
-def _check_range(column: Column, values: NDArray[Any]) -> None:
-    defined = values.compressed() if isinstance(values, np.ma.MaskedArray) else values
-    if column.kind == "int8" and values.dtype != np.int8 and defined.size:
-        low, high = int(defined.min()), int(defined.max())
-        if low < -128 or high > 127:
-            raise ValueError(
-                f"column {column.name!r} ranges from {low} to {high}; int8 holds "
-                "-128 to 127"
-            )
-
-
-def _masked_or_plain(column: Column, values: NDArray[Any]) -> NDArray[Any]:
-    dtype: Any = str if column.kind == "string" else column.kind  # numpy's DTypeLike
-    if column.nullable:
-        return np.ma.MaskedArray(
-            np.ma.getdata(values).astype(dtype), mask=np.ma.getmaskarray(values)
-        )
-    if np.ma.is_masked(values):
-        raise ValueError(
-            f"column {column.name!r} has undefined samples; it must be defined "
-            "throughout"
-        )
-    return np.ma.getdata(values).astype(dtype, copy=False)
-
-
-def check_time(time: NDArray[np.float64]) -> None:
-    """Refuse times that are not finite or do not increase.
+def with_method_columns(added: Sequence[Column]) -> tuple[Column, ...]:
+    """The columns of every record and those that a method adds.
 
     Args:
-        time: Sample times [s], shape `(time,)`.
+        added: Columns of the method, names with the prefix `method_`.
 
     Raises:
-        ValueError: Naming the first row at fault.
+        ValueError: If a column cannot be one of a method, saying which and why.
     """
-    if not np.isfinite(time).all():
-        row = int(np.flatnonzero(~np.isfinite(time))[0])
-        raise ValueError(f"time is {time[row]} in row {row}; every time must be finite")
-    falling = np.flatnonzero(np.diff(time) <= 0)
-    if falling.size:
-        row = int(falling[0]) + 1
-        raise ValueError(
-            f"time does not increase in row {row}: {time[row - 1]} s, then "
-            f"{time[row]} s; sort the rows or split the recording"
+    for place, column in enumerate(added):
+        fault = _fault_of(column, {other.name for other in added[:place]})
+        if fault:
+            raise ValueError(f"column {column.name!r} of the method {fault}")
+    return (*COLUMNS, *added)
+
+
+def _fault_of(column: Column, before: set[str]) -> str | None:
+    """What is wrong with a column that a method adds; None if nothing is."""
+    if not column.name.startswith(METHOD_PREFIX) or not column.name.isidentifier():
+        return (
+            f"must be named {METHOD_PREFIX!r} and then letters, digits or underscores, "
+            f"such as {METHOD_PREFIX + 'integral'!r}"
         )
-
-
-def _check_lengths(columns: dict[str, NDArray[Any]]) -> None:
-    num_rows = len(columns["time"])
-    if num_rows == 0:
-        raise ValueError("a trial record needs at least one row; it has none")
-    uneven = {k: len(v) for k, v in columns.items() if len(v) != num_rows}
-    if uneven:
-        name, length = next(iter(uneven.items()))
-        raise ValueError(
-            f"column {name!r} has {length} rows, 'time' has {num_rows}; all columns "
-            "of a record are equally long"
-        )
-
-
-def _check_names(
-    what: str, given: dict[str, Any], wanted: tuple[str, ...], extra_allowed: bool
-) -> None:
-    missing = [name for name in wanted if name not in given]
-    if missing:
-        raise ValueError(f"missing {what}s: {', '.join(missing)}")
-    extra = [name for name in given if name not in wanted]
-    if extra and not extra_allowed:
-        raise ValueError(
-            f"unknown {what}s: {', '.join(extra)}; a trial record has "
-            f"{', '.join(wanted)}"
-        )
+    if column.name in before:
+        return "is declared twice; give each a name of its own"
+    for field, choice in (("kind", get_args(Kind)), ("mirrored", get_args(Mirrored))):
+        given = getattr(column, field)
+        if given not in choice:
+            return f"has {field} {given!r}; choose from {', '.join(choice)}"
+    if (column.kind == "string") != bool(column.labels):
+        return "needs labels if it is a string, and has none if it is not"
+    return None

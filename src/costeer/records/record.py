@@ -8,22 +8,31 @@ import json
 import os
 from collections.abc import Sequence
 from pathlib import Path
+from typing import NamedTuple
 
 import pyarrow as pa
 import pyarrow.csv
 import pyarrow.ipc
 import pyarrow.parquet as pq
 
-from costeer.records.arrow import METADATA_KEY, from_table, plain_columns, to_table
+from costeer.records.arrow import (
+    METADATA_KEY,
+    described,
+    from_table,
+    plain_columns,
+    to_table,
+)
+from costeer.records.checks import refuse_unknown, validated
 from costeer.records.columns import (
     COLUMN_NAMES,
     COLUMNS,
-    METADATA_FIELDS,
+    METHOD_PREFIX,
     MODES,
     Column,
     TrialRecord,
-    validated,
+    with_method_columns,
 )
+from costeer.records.metadata import METADATA_FIELDS
 
 __all__ = [
     "COLUMNS",
@@ -41,8 +50,8 @@ __all__ = [
 MARKERS_KEY = b"markers"
 """Where a stream keeps the markers of a batch, as JSON."""
 
-_FLOATS = [column.name for column in COLUMNS if column.kind == "float64"]
-_REPETITIVE = [c.name for c in COLUMNS if c.kind in ("int8", "string")]
+CLOCK_KEY = b"clock"
+"""Where a stream says when its trial began and until when it was driven, as JSON."""
 
 
 def write_record(path: str | os.PathLike[str], record: TrialRecord) -> None:
@@ -56,13 +65,18 @@ def write_record(path: str | os.PathLike[str], record: TrialRecord) -> None:
         record: The trial.
 
     Raises:
-        ValueError: If the record is not valid, see `columns.validated`.
+        ValueError: If the record is not valid, see `checks.validated`.
         OSError: If the file cannot be written; then nothing is left of it.
     """
-    _replace_with_table(Path(path), to_table(validated(record)))
+    declared = with_method_columns(record.method_columns)
+    _replace_with_table(Path(path), to_table(validated(record)), declared)
 
 
-def _replace_with_table(path: Path, table: pa.Table) -> None:
+def _replace_with_table(
+    path: Path, table: pa.Table, declared: Sequence[Column]
+) -> None:
+    floats = [column.name for column in declared if column.kind == "float64"]
+    repetitive = [c.name for c in declared if c.kind in ("int8", "string")]
     partial = path.with_name(path.name + ".tmp")
     try:
         # Byte-stream split and zstd give two thirds of the plain size and read back
@@ -72,8 +86,8 @@ def _replace_with_table(path: Path, table: pa.Table) -> None:
             partial,
             compression="zstd",
             compression_level=1,
-            use_dictionary=_REPETITIVE,
-            column_encoding=dict.fromkeys(_FLOATS, "BYTE_STREAM_SPLIT"),
+            use_dictionary=repetitive,
+            column_encoding=dict.fromkeys(floats, "BYTE_STREAM_SPLIT"),
             write_statistics=False,
             write_page_checksum=True,
         )
@@ -95,15 +109,21 @@ def read_record(
         columns: Names to read; all if None. `time` always comes along.
 
     Returns:
-        The trial, with just those columns in the order of `COLUMNS`.
+        The trial, with just those columns in the order of `COLUMNS`, then those that
+        its method has added.
 
     Raises:
         ValueError: If the file is no Parquet, cut short or damaged, has no
             description of the trial, or columns are missing or of the wrong kind.
         OSError: If the file cannot be read.
     """
-    wanted = _wanted_columns(columns)
-    return _record_in(_opened(Path(path)), path, wanted)
+    names = None if columns is None else ("time", *columns)
+    refuse_unknown(
+        name
+        for name in names or ()
+        if name not in COLUMN_NAMES and not name.startswith(METHOD_PREFIX)
+    )
+    return _record_in(_opened(Path(path)), path, names)
 
 
 def read_recording(path: str | os.PathLike[str]) -> TrialRecord:
@@ -126,7 +146,7 @@ def read_recording(path: str | os.PathLike[str]) -> TrialRecord:
         return read_stream(path)
     file = _opened(Path(path))
     if METADATA_KEY in (file.schema_arrow.metadata or {}):
-        return _record_in(file, path, list(COLUMN_NAMES))
+        return _record_in(file, path, None)
     return _plain_recording(_rows(file, path, file.schema_arrow.names), path)
 
 
@@ -134,41 +154,65 @@ def read_stream(path: str | os.PathLike[str]) -> TrialRecord:
     """Read the Arrow stream that a drive writes while it goes on.
 
     A drive that was cut off leaves a stream without an end; all of its whole batches
-    are read. Markers lie beside the batches and come as `markers` in the metadata.
+    are read. What lies beside the batches comes into the metadata: `markers`,
+    `started_at` and `ended_at`.
 
     Raises:
         ValueError: If there is not one whole batch of a trial in it.
         OSError: If it cannot be read.
     """
-    table, markers = stream_table(Path(path))
+    stream = whole_batches(Path(path))
+    table = pa.Table.from_batches(stream.batches)
     try:
-        record = from_table(table, list(COLUMN_NAMES))
+        record = from_table(table, described(table.schema))
+        beside = _told_beside(stream)
     except ValueError as error:
         raise ValueError(f"{path}: {error}") from error
-    return TrialRecord({**record.metadata, "markers": markers}, record.columns)
+    return record._replace(metadata=record.metadata | beside)
 
 
-def stream_table(path: Path) -> tuple[pa.Table, list[object]]:
-    """All whole batches of an Arrow stream, and the markers beside them.
+class Stream(NamedTuple):
+    """What can be read of an Arrow stream.
+
+    Attributes:
+        batches: All that are whole.
+        beside: What lies beside each of them.
+    """
+
+    batches: list[pa.RecordBatch]
+    beside: list[dict[bytes, bytes]]
+
+
+def whole_batches(path: Path) -> Stream:
+    """All whole batches of an Arrow stream.
 
     Raises:
         ValueError: If there is none.
         OSError: If it cannot be read.
     """
     content = path.read_bytes()
-    batches: list[pa.RecordBatch] = []
-    markers: list[object] = []
+    stream = Stream([], [])
     try:
         reader = pa.ipc.open_stream(pa.BufferReader(content))
         while True:
             batch, beside = reader.read_next_batch_with_custom_metadata()
-            batches.append(batch)
-            markers += json.loads(beside[MARKERS_KEY]) if beside else []
+            stream.batches.append(batch)
+            stream.beside.append(dict(beside or {}))
     except (StopIteration, pa.ArrowException, OSError):
         pass  # the end, or what a killed process left of a batch
-    if not any(batch.num_rows for batch in batches):
+    if not any(batch.num_rows for batch in stream.batches):
         raise ValueError(f"{path} holds no row of a drive; it had not begun")
-    return pa.Table.from_batches(batches), markers
+    return stream
+
+
+def _told_beside(stream: Stream) -> dict[str, object]:
+    """Markers, and the clock as the last batch told it."""
+    markers: list[object] = []
+    clock: dict[str, object] = {}
+    for beside in stream.beside:
+        markers += json.loads(beside.get(MARKERS_KEY, b"[]"))
+        clock |= json.loads(beside.get(CLOCK_KEY, b"{}"))
+    return {"markers": markers, **clock}
 
 
 def _plain_recording(table: pa.Table, path: str | os.PathLike[str]) -> TrialRecord:
@@ -176,17 +220,6 @@ def _plain_recording(table: pa.Table, path: str | os.PathLike[str]) -> TrialReco
         return TrialRecord(metadata={}, columns=plain_columns(table))
     except ValueError as error:
         raise ValueError(f"{path}: {error}") from error
-
-
-def _wanted_columns(columns: Sequence[str] | None) -> list[str]:
-    unknown = [name for name in columns or () if name not in COLUMN_NAMES]
-    if unknown:
-        raise ValueError(
-            f"unknown columns: {', '.join(unknown)}; a trial record has "
-            f"{', '.join(COLUMN_NAMES)}"
-        )
-    chosen = COLUMN_NAMES if columns is None else ("time", *columns)
-    return [name for name in COLUMN_NAMES if name in chosen]
 
 
 def _opened(path: Path) -> pq.ParquetFile:
@@ -200,11 +233,13 @@ def _opened(path: Path) -> pq.ParquetFile:
 
 
 def _record_in(
-    file: pq.ParquetFile, path: str | os.PathLike[str], wanted: list[str]
+    file: pq.ParquetFile, path: str | os.PathLike[str], names: Sequence[str] | None
 ) -> TrialRecord:
-    present = [name for name in wanted if name in file.schema_arrow.names]
+    there = file.schema_arrow.names
     try:
-        return from_table(_rows(file, path, present), wanted)
+        about = described(file.schema_arrow)
+        present = there if names is None else [name for name in there if name in names]
+        return from_table(_rows(file, path, present), about, names)
     except ValueError as error:
         raise ValueError(f"{path}: {error}") from error
 

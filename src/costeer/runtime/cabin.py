@@ -30,11 +30,11 @@ from costeer.loop.realtime import (
     wheel_tick,
     with_method,
 )
-from costeer.loop.rows import ROW_COLUMNS
 from costeer.methods.conditions import CONDITION_NAMES
 from costeer.methods.interface import rule_of
 from costeer.methods.registry import AnyMethod, method_named
 from costeer.plant.parameters import CarParameters
+from costeer.records.row import ROW_COLUMNS
 from costeer.runtime.guard import GuardParameters, GuardState
 from costeer.runtime.guard import step as guarded
 from costeer.runtime.hands import (

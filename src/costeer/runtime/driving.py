@@ -23,8 +23,8 @@ from costeer.devices.wheels.interface import (
     WheelLost,
 )
 from costeer.devices.wheels.registry import open_wheel
-from costeer.loop.rows import ROW_COLUMNS
 from costeer.plant.road import adjacent_side
+from costeer.records.row import ROW_COLUMNS
 from costeer.runtime.cabin import Cabin, Controls
 from costeer.runtime.choices import Choices
 from costeer.runtime.frame import FRAME_COLUMNS

@@ -2,42 +2,49 @@
 
 from __future__ import annotations
 
-from costeer.loop.rows import ROW_COLUMNS
+from costeer.records.columns import COLUMNS, Column
+
+
+def _told(name: str, unit: str, description: str, stepped: bool = False) -> Column:
+    return Column(name, unit, "float64", description, stepped=stepped)
+
 
 EXTRA_COLUMNS = (
-    "run_state",
-    "fault",
-    "wheel_torque",
-    "fade",
-    "intended_angle",
-    "input_sequence",
-    "wheel_time",
-    "sent_time",
-    "compute_time",
-    "lateness",
-    "strength_factor",
-    "condition",
-    "indicator",
+    _told("run_state", "-", "place in `RUN_STATES`", stepped=True),
+    _told("fault", "-", "place in `FAULTS`", stepped=True),
+    _told("wheel_torque", "N·m", "asked of the steering wheel"),
+    _told("fade", "-", "share of the torque that is let through, in [0, 1]"),
+    _told("intended_angle", "rad", "of the virtual hands"),
+    _told("input_sequence", "-", "number of the last input that acted", stepped=True),
+    _told("wheel_time", "s", "when the wheel was read, process clock", stepped=True),
+    _told("sent_time", "s", "when the frame was sent, process clock", stepped=True),
+    _told("compute_time", "s", "how long the control step took"),
+    _told("lateness", "s", "largest since the last control step"),
+    _told("strength_factor", "-", "of the guidance, 0 in manual driving", stepped=True),
+    _told("condition", "-", "place among the conditions", stepped=True),
+    _told("indicator", "-", "-1 right, 0 off, +1 left", stepped=True),
 )
 """Besides the record: state, safety, virtual hands and timing."""
 
-FRAME_COLUMNS = (*ROW_COLUMNS, *EXTRA_COLUMNS)
-"""Names of the numbers of a frame."""
+FRAME = (*COLUMNS, *EXTRA_COLUMNS)
+"""The numbers of a frame."""
+
+FRAME_COLUMNS = tuple(column.name for column in FRAME)
+"""Their names."""
 
 PLACE = {name: place for place, name in enumerate(FRAME_COLUMNS)}
 """Where each stands."""
 
-TRACE_COLUMNS = (
-    "time",
-    "lateness",
-    "steering_wheel_angle",
-    "steering_wheel_rate",
-    "wheel_torque",
-    "driver_torque",
-    "step_time",
+TRACE = (
+    _told("time", "s", "of the trial at the start of the plant step"),
+    _told("lateness", "s", "how late the plant step began"),
+    _told("steering_wheel_angle", "rad", "left positive"),
+    _told("steering_wheel_rate", "rad/s", "its time derivative"),
+    _told("wheel_torque", "N·m", "asked of the steering wheel"),
+    _told("driver_torque", "N·m", "of the driver at the wheel"),
+    _told("step_time", "s", "how long the plant step took, the device included"),
 )
-"""Of the wheel at the plant's rate: `time` of the trial at the start of the plant
-step, `lateness` how late it began, `step_time` how long it took, the device included.
-"""
+"""Of the wheel at the plant's rate."""
 
-TRACE_UNITS = ("s", "s", "rad", "rad/s", "N·m", "N·m", "s")
+TRACE_COLUMNS = tuple(column.name for column in TRACE)
+"""Their names."""

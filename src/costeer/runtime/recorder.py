@@ -13,6 +13,7 @@ from costeer.base.described import described
 from costeer.loop.parameters import LoopParameters
 from costeer.loop.scenario import is_assisted
 from costeer.loop.trial import trial_metadata, trial_predictor
+from costeer.records.metadata import PERSON
 from costeer.runtime.frame import PLACE
 from costeer.runtime.markers import Marker
 from costeer.runtime.setup import DriveSetup, drive_parameters
@@ -48,6 +49,7 @@ def drive_metadata(
         **about,
         "participant": setup.participant,
         "driver": f"person, {hands}",
+        "driver_kind": PERSON,
         "driver_torque_source": torque_source(setup),
         "intention_source": setup.intention,
         "head_tracker": None if setup.head is None else setup.head.tracker.kind,

@@ -8,6 +8,8 @@ the studies and beside it the wheel at the plant's rate.
 from __future__ import annotations
 
 import json
+from collections.abc import Callable, Sequence
+from datetime import UTC, datetime, timedelta
 from pathlib import Path
 from typing import NamedTuple
 
@@ -17,12 +19,19 @@ import pyarrow.ipc
 import pyarrow.parquet as pq
 from numpy.typing import NDArray
 
-from costeer.loop.rows import ROW_COLUMNS
-from costeer.loop.trial import record_columns
 from costeer.records.arrow import record_schema, to_table
-from costeer.records.columns import TrialRecord, validated
-from costeer.records.record import MARKERS_KEY, read_stream, stream_table, write_record
-from costeer.runtime.frame import TRACE_COLUMNS, TRACE_UNITS
+from costeer.records.checks import validated
+from costeer.records.columns import Column, TrialRecord, with_method_columns
+from costeer.records.metadata import CLOCK_FIELDS
+from costeer.records.record import (
+    CLOCK_KEY,
+    MARKERS_KEY,
+    read_stream,
+    whole_batches,
+    write_record,
+)
+from costeer.records.row import record_columns
+from costeer.runtime.frame import TRACE
 from costeer.runtime.markers import Marker, as_json
 
 
@@ -93,17 +102,29 @@ class RecordStream:
     Args:
         paths: Where they lie.
         metadata: Of the trial, as its record will have it.
+        method_columns: What the method adds to the columns of every record.
+        now: The wall clock; a test has its own.
 
     Raises:
         OSError: If they cannot be written.
     """
 
-    def __init__(self, paths: RecordPaths, metadata: dict[str, object]) -> None:
+    def __init__(
+        self,
+        paths: RecordPaths,
+        metadata: dict[str, object],
+        method_columns: Sequence[Column] = (),
+        now: Callable[[], datetime] = lambda: datetime.now(UTC),
+    ) -> None:
         self.paths = paths
         self._metadata = metadata
+        self._added = tuple(method_columns)
+        self._columns = with_method_columns(method_columns)
+        self._now = now
+        self._started: datetime | None = None
         self.num_rows = 0
         paths.stream.parent.mkdir(parents=True, exist_ok=True)
-        self._schema = record_schema(metadata)
+        self._schema = record_schema(metadata, method_columns)
         self._file = paths.stream.open("xb")
         self._writer = pa.ipc.new_stream(self._file, self._schema)
         self._trace_file = paths.trace_stream.open("xb")
@@ -119,14 +140,16 @@ class RecordStream:
         """Append a batch and flush it.
 
         Args:
-            rows: In the order of `ROW_COLUMNS`, shape `(time, column)`; may be none
-                if there are markers.
+            rows: Of the loop, more columns may follow, shape `(time, column)`; may be
+                none if there are markers.
             assisted: Whether the guidance had strength, shape `(time,)`.
             markers: What happened since the last batch.
         """
-        batch = self._batch(rows[:, : len(ROW_COLUMNS)], assisted)
+        batch = self._batch(rows[:, : len(self._columns)], assisted)
         told = json.dumps([as_json(marker) for marker in markers])
-        beside = {MARKERS_KEY: told} if markers else None
+        beside = {MARKERS_KEY: told} if markers else {}
+        if len(rows):
+            beside[CLOCK_KEY] = json.dumps(self._clock(batch))
         self._writer.write_batch(batch, custom_metadata=beside)
         self._file.flush()
         self.num_rows += len(rows)
@@ -137,8 +160,18 @@ class RecordStream:
         """The rows as one batch of a record."""
         if len(rows) == 0:
             return pa.RecordBatch.from_pylist([], schema=self._schema)
-        record = TrialRecord(self._metadata, record_columns(rows, assisted))
+        columns = record_columns(rows, assisted, self._columns)
+        record = TrialRecord(self._metadata, columns, self._added)
         return to_table(validated(record)).combine_chunks().to_batches()[0]
+
+    def _clock(self, batch: pa.RecordBatch) -> dict[str, str]:
+        """When the trial began, and until when it was driven."""
+        now = self._now()
+        if self._started is None:  # the rows have waited since the trial began
+            waited = batch.column("time")[-1].as_py()
+            self._started = now - timedelta(seconds=waited)
+        moments = zip(CLOCK_FIELDS, (self._started, now), strict=True)
+        return {name: each.isoformat(timespec="seconds") for name, each in moments}
 
     def write_trace(self, rows: NDArray[np.float64]) -> None:
         """Append rows of the wheel at the plant's rate and flush them."""
@@ -164,8 +197,13 @@ def trace_schema() -> pa.Schema:
     """Schema of the wheel's trace, with units."""
     return pa.schema(
         [
-            pa.field(name, pa.float64(), nullable=False, metadata={"unit": unit})
-            for name, unit in zip(TRACE_COLUMNS, TRACE_UNITS, strict=True)
+            pa.field(
+                column.name,
+                pa.float64(),
+                nullable=False,
+                metadata={"unit": column.unit, "description": column.description},
+            )
+            for column in TRACE
         ]
     )
 
@@ -199,9 +237,9 @@ def finish(paths: RecordPaths, num_rows: int) -> bool:
 def _finish_trace(paths: RecordPaths) -> None:
     """The wheel's trace as Parquet, whole or not at all."""
     try:
-        table, _ = stream_table(paths.trace_stream)
+        stream = whole_batches(paths.trace_stream)
     except (ValueError, FileNotFoundError):
         return
     partial = paths.trace.with_name(paths.trace.name + ".tmp")
-    pq.write_table(table, partial, compression="zstd")
+    pq.write_table(pa.Table.from_batches(stream.batches), partial, compression="zstd")
     partial.replace(paths.trace)

@@ -6,10 +6,11 @@ import csv
 from collections.abc import Callable
 from pathlib import Path
 
+from costeer.records.metadata import PERSON
 from costeer.records.record import read_record
 from costeer.study.configuration import settings_of
 from costeer.study.folder import locked, read_study, record_path
-from costeer.study.material import HUMAN_DRIVER, find_records
+from costeer.study.material import find_records
 from costeer.study.report import write_report
 from costeer.study.run import remake_tables
 from costeer.study.trial_tables import TRIALS_FILE
@@ -45,7 +46,7 @@ def holds_human_trials(folder: Path) -> bool:
     """Whether the first record of the folder that can be read is a person's."""
     for path in find_records(folder).values():
         try:
-            return read_record(path, ()).metadata["driver"] == HUMAN_DRIVER
+            return read_record(path, ()).metadata["driver_kind"] == PERSON
         except ValueError:
             continue  # cut short by a crash: the next one tells
     return False

@@ -85,7 +85,7 @@ def _analysed(
     recording: TrialRecord, part: Stretch, parameters: MeasureParameters, source: str
 ) -> Analysis:
     found = _sampling(part)
-    even = TrialRecord(recording.metadata, dict(evened(part.columns, found)))
+    even = recording._replace(columns=dict(evened(part.columns, found)))
     measures = trial_measures(prepare(even.columns, parameters))
     return Analysis(
         source=source,

@@ -7,21 +7,32 @@ run at once and whether a report is written are not part of it.
 from __future__ import annotations
 
 import hashlib
+from collections.abc import Mapping
 from functools import cache
 from pathlib import Path
 from typing import Any, NamedTuple
 
 from costeer import __version__
+from costeer.base.described import described
 from costeer.base.entry import COMPILED_ROOMS
 from costeer.controller.step import ControllerParameters
-from costeer.intention.weights import load_weights
-from costeer.loop.scenario import TrialSetup, check_setup, check_study_seed
+from costeer.drivers.driver import DriverParameters
+from costeer.intention.predictors.registry import OURS
+from costeer.loop.inputs import car_of, read_driver
+from costeer.loop.scenario import (
+    TrialSetup,
+    check_setup,
+    check_study_seed,
+    loop_parameters,
+)
+from costeer.loop.trial import trial_predictor
 from costeer.methods.conditions import (
     CONDITION_NAMES,
-    MANUAL,
     check_conditions,
-    condition,
 )
+from costeer.methods.interface import method_sources
+from costeer.methods.registry import AnyMethod, method_named
+from costeer.plant.parameters import CarParameters
 from costeer.study.design import Trial, plan_trials
 
 MOST_PARTICIPANTS = 9999
@@ -39,17 +50,25 @@ class StudySettings(NamedTuple):
         intention: `network`, or `scripted`: the driver's decision is known.
         length: Of the course [m]. Source: Sec. III-B, 8 km.
         speed: Suggested to the driver [m/s]. Source: Sec. III-B, about 70 km/h.
-        car: Name of the car.
+        car: Name of the car, or a YAML file of one.
+        predictor: What reads the intention: its name, or where it is.
+        weights: File of its numbers; empty for those that ship.
+        drivers: Files of drivers, who take turns; none: the population.
+        parameters: Dotted names of parameters and the values they are given.
     """
 
     participants: int = 12
     conditions: tuple[str, ...] = CONDITION_NAMES
     seed: int = 1
-    method: str = "ibhs"
+    method: str | AnyMethod = "ibhs"
     intention: str = "network"
     length: float = 8000.0
     speed: float = 70 / 3.6
     car: str = "default"
+    predictor: str = OURS
+    weights: str = ""
+    drivers: tuple[str, ...] = ()
+    parameters: tuple[tuple[str, float], ...] = ()
 
 
 PUBLISHED_STUDY = StudySettings()
@@ -65,6 +84,22 @@ def check_settings(settings: StudySettings) -> StudySettings:
     Raises:
         ValueError: Naming the first value out of range, the range and the way out.
     """
+    known_settings = _checked_plan(settings)
+    for trial in plan_trials(1, known_settings.conditions):
+        check_setup(trial_setup(known_settings, trial))
+        loop_parameters(trial_setup(known_settings, trial))
+    trial_predictor(
+        trial_setup(known_settings, plan_trials(1, (CONDITION_NAMES[1],))[0])
+    )
+    return known_settings
+
+
+def _checked_plan(settings: StudySettings) -> StudySettings:
+    """The settings, as far as they can be judged without what is plugged in.
+
+    Raises:
+        ValueError: Naming the first value out of range.
+    """
     check_count("participants", settings.participants, 1, MOST_PARTICIPANTS)
     check_count("seed", settings.seed, 0, LARGEST_SEED)
     check_study_seed(settings.seed)
@@ -73,12 +108,7 @@ def check_settings(settings: StudySettings) -> StudySettings:
         raise ValueError(
             f"intention {settings.intention!r} is not known; choose one of {known}"
         )
-    known_settings = StudySettings(
-        **{**settings._asdict(), "conditions": check_conditions(settings.conditions)}
-    )
-    for trial in plan_trials(1, known_settings.conditions):
-        check_setup(trial_setup(known_settings, trial))
-    return known_settings
+    return settings._replace(conditions=check_conditions(settings.conditions))
 
 
 def check_count(name: str, value: int, least: int, most: int) -> None:
@@ -91,19 +121,37 @@ def check_count(name: str, value: int, least: int, most: int) -> None:
 
 def trial_setup(settings: StudySettings, trial: Trial) -> TrialSetup:
     """Return how to simulate one trial of the study."""
-    chosen = condition(trial.condition)
     return TrialSetup(
         participant=trial.participant,
         seed=settings.seed,
-        condition=chosen.name,
-        strength_factor=chosen.strength_factor,
-        change_duration=chosen.change_duration,
-        method=MANUAL if chosen.name == MANUAL else settings.method,
+        condition=trial.condition,
+        method=settings.method,
         length=settings.length,
         speed=settings.speed,
-        car=settings.car,
+        car=_car(settings.car),
+        driver=_driver(settings.drivers, trial.participant),
         intention=settings.intention,
+        predictor=settings.predictor,
+        weights=settings.weights or None,
+        parameters=settings.parameters,
     )
+
+
+@cache
+def _car(text: str) -> str | CarParameters:
+    return car_of(text)
+
+
+@cache
+def _driver_in(file: str) -> DriverParameters:
+    return read_driver(Path(file))
+
+
+def _driver(files: tuple[str, ...], participant: int) -> str | DriverParameters:
+    """Who drives as a participant: of the population, or of one file after another."""
+    if not files:
+        return "virtual"
+    return _driver_in(files[(participant - 1) % len(files)])
 
 
 def study_configuration(settings: StudySettings) -> dict[str, object]:
@@ -113,15 +161,65 @@ def study_configuration(settings: StudySettings) -> dict[str, object]:
         ValueError: If the shipped network is damaged.
         OSError: If it cannot be read.
     """
+    method = method_named(settings.method)
+    given = settings._asdict() | {
+        "method": settings.method if isinstance(settings.method, str) else method.name,
+        "conditions": list(settings.conditions),
+        "drivers": list(settings.drivers),
+        "parameters": dict(settings.parameters),
+    }
     return {
         "costeer_version": __version__,
         "simulation_source": simulation_source(),
-        **settings._asdict(),
-        "conditions": list(settings.conditions),
+        **given,
+        **_plugged_in(settings, method),
         **_thresholds(),
-        "intention_model_hash": _model_hash(settings.intention),
         "order": driving_order(settings),
     }
+
+
+def _plugged_in(settings: StudySettings, method: AnyMethod) -> dict[str, object]:
+    """What came from outside costeer, so that its results can be told from others."""
+    setup = trial_setup(settings, Trial(1, CONDITION_NAMES[1], 1))
+    predictor = trial_predictor(setup)
+    drivers = [_driver_in(file) for file in settings.drivers]
+    car = setup.car
+    return {
+        "method_version": method.version,
+        "method_source_hash": method_sources(method),
+        "intention_model_hash": None if predictor is None else predictor.hash,
+        "car_parameters": None if isinstance(car, str) else car._asdict(),
+        "driver_parameters": [
+            {each.name: each.value for each in described(driver)} for driver in drivers
+        ],
+    }
+
+
+def differences(configuration: Mapping[str, Any]) -> list[tuple[str, str, str]]:
+    """What a study has other than the published one: name, value, published value.
+
+    Args:
+        configuration: Of a study's folder.
+    """
+    told = []
+    for name, usual in PUBLISHED_STUDY._asdict().items():
+        value = configuration.get(name, usual)
+        if name in ("seed", "participants") or _plain(value) == _plain(usual):
+            continue
+        if name == "parameters":
+            told += [(each, f"{number:g}", "") for each, number in value.items()]
+        else:
+            told.append((name, _plain(value), _plain(usual)))
+    return told
+
+
+def _plain(value: object) -> str:
+    """A setting in words; a list and a tuple of the same are the same."""
+    if isinstance(value, Mapping):
+        return ", ".join(f"{name} {number:g}" for name, number in value.items())
+    if isinstance(value, list | tuple):
+        return ", ".join(map(str, value))
+    return f"{value:g}" if isinstance(value, float) else str(value)
 
 
 def _thresholds() -> dict[str, object]:
@@ -134,22 +232,25 @@ def _thresholds() -> dict[str, object]:
     }
 
 
-def _model_hash(intention: str) -> str | None:
-    """Hash of the network's weights; None where no network is asked."""
-    return load_weights().hash if intention == "network" else None
-
-
 def settings_of(configuration: dict[str, Any]) -> StudySettings:
     """Return the settings in a configuration that was read from a file.
 
     Raises:
         ValueError: If one is missing or out of range.
     """
-    missing = [name for name in StudySettings._fields if name not in configuration]
+    usual = PUBLISHED_STUDY._asdict()
+    missing = [name for name in _FIRST_SETTINGS if name not in configuration]
     if missing:
         raise ValueError(f"the configuration lacks {', '.join(missing)}")
-    chosen = {name: configuration[name] for name in StudySettings._fields}
-    return check_settings(StudySettings(**chosen))
+    # Any: each setting has a type of its own.
+    chosen: dict[str, Any] = {n: configuration.get(n, usual[n]) for n in usual}
+    chosen["drivers"] = tuple(chosen["drivers"])
+    chosen["parameters"] = tuple(dict(chosen["parameters"]).items())
+    return _checked_plan(StudySettings(**chosen))
+
+
+_FIRST_SETTINGS = StudySettings._fields[:8]
+"""What every study has said, also before there were plug-ins."""
 
 
 def driving_order(settings: StudySettings) -> list[list[str]]:

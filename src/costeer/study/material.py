@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from costeer.controller.replanning import ReplanningParameters
 from costeer.methods.conditions import CONDITION_NAMES
+from costeer.records.metadata import PERSON
 from costeer.records.record import read_record
 from costeer.study.folder import RECORDS, StudyFolder, read_study
 from costeer.study.outcome import WITHIN, PairRow, StudyTests, SummaryRow
@@ -34,9 +35,6 @@ of the left lane's centre."""
 
 LANE_TICKS = (-3.5, -1.75, 0.0)
 """Right lane's centre, line between the lanes, left lane's centre [m]."""
-
-HUMAN_DRIVER = "human"
-"""What a record says of its driver if it is a person."""
 
 _RECORD_NAME = re.compile(r"(\d+)-([a-z]+(?:-[a-z]+)?)\.parquet")
 
@@ -144,7 +142,7 @@ def strengths_driven(material: StudyMaterial) -> tuple[str, ...]:
 
 def is_virtual(material: StudyMaterial) -> bool:
     """Whether no person held the wheel in any trial."""
-    return all(each["driver"] != HUMAN_DRIVER for each in material.metadata)
+    return all(each["driver_kind"] != PERSON for each in material.metadata)
 
 
 def replan_gain(material: StudyMaterial) -> float:

@@ -9,7 +9,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from costeer.records.columns import COLUMNS_BY_NAME, converted
+from costeer.records.checks import converted
+from costeer.records.columns import COLUMNS_BY_NAME
 from costeer.study.definitions import Columns
 
 

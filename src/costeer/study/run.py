@@ -12,7 +12,7 @@ import shlex
 from collections.abc import Callable, Sequence
 from functools import partial
 from pathlib import Path
-from typing import NamedTuple, TypeVar
+from typing import Any, NamedTuple, TypeVar
 
 from costeer.loop.trial import simulate_trial
 from costeer.study.configuration import (
@@ -152,9 +152,19 @@ def study_command(settings: StudySettings) -> str:
     words = ["costeer", "study", "--out", "FOLDER"]
     for name, value in settings._asdict().items():
         if value != default[name]:
-            text = ",".join(value) if name == "conditions" else str(value)
-            words += [f"--{name}", text]
+            words += _option(name, value)
     return shlex.join(words)
+
+
+def _option(name: str, value: Any) -> list[str]:  # Any: of a setting
+    """A setting as words of the command line."""
+    if name == "drivers":
+        return [word for file in value for word in ("--driver-file", file)]
+    if name == "parameters":
+        return [w for place, number in value for w in ("--set", f"{place}={number!r}")]
+    if name == "method":
+        return ["--method", value if isinstance(value, str) else value.name]
+    return [f"--{name}", ",".join(value) if name == "conditions" else str(value)]
 
 
 def _all_done(

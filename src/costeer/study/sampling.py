@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from costeer.records.columns import check_time
+from costeer.records.checks import check_time
 from costeer.study.definitions import Columns, Signal
 
 LONGEST_STEP = 0.25

@@ -59,7 +59,7 @@ def finish_trial(
     if there is not None:
         return there
     made = simulate(trial_setup(settings, trial))
-    record = TrialRecord({**made.metadata, HASH_FIELD: folder.hash}, made.columns)
+    record = made._replace(metadata={**made.metadata, HASH_FIELD: folder.hash})
     write_record(record_path(folder.path, trial.participant, trial.condition), record)
     return _measured(trial, record, resumed=False)
 

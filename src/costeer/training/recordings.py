@@ -25,7 +25,7 @@ from costeer.intention.features import (
     feature_series,
     mirrored,
 )
-from costeer.records.columns import text_told
+from costeer.records.checks import text_told
 from costeer.records.plausible import suspicions
 from costeer.records.record import TrialRecord, read_recording
 from costeer.training.labels import Labels, labels

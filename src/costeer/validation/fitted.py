@@ -20,9 +20,7 @@ from costeer.loop.scenario import (
     SLOWEST,
     TrialSetup,
 )
-from costeer.loop.trial import (
-    simulate_trial,
-)
+from costeer.loop.trial import simulate_trial
 from costeer.records.columns import TrialRecord
 from costeer.study.definitions import Columns, Measure
 from costeer.study.jobs import run_jobs

@@ -25,12 +25,12 @@ from costeer.drivers.driver import DriverParameters
 from costeer.drivers.population import participant_driver
 from costeer.loop.parameters import DT, LoopParameters
 from costeer.loop.rollout import rollout
-from costeer.loop.rows import ROW_COLUMNS
 from costeer.loop.scenario import TrialSetup, loop_parameters, trial_car
 from costeer.loop.tick import INTENTION_OFF, PREDICTION_HORIZON, Script
 from costeer.loop.trial import idle_network, simulate_trial
 from costeer.methods.manual import MANUAL
 from costeer.plant.parameters import CARS, CarParameters, RoadParameters
+from costeer.records.row import ROW_COLUMNS
 from costeer.validation.driver_loop import (
     least_damped,
     poles,

@@ -23,7 +23,7 @@ from costeer.runtime.choices import (
     tuned_values,
 )
 from costeer.runtime.drive import Drive, Listener
-from costeer.runtime.frame import FRAME_COLUMNS, PLACE
+from costeer.runtime.frame import FRAME, PLACE
 from costeer.runtime.markers import Marker
 from costeer.runtime.patience import PAGE_PATIENCE
 from costeer.runtime.setup import (
@@ -46,6 +46,7 @@ from costeer.web.messages import (
     Start,
     Stop,
     marker_shown,
+    told_of,
 )
 from costeer.web.session import Broadcast, Role
 
@@ -160,7 +161,7 @@ class DriveOnPages:
         road, car = parameters.road, parameters.car
         return {
             "mode": "drive",
-            "columns": list(FRAME_COLUMNS),
+            **told_of(FRAME),
             "rate": FRAME_RATE,
             "road": road._asdict(),
             "car": {

@@ -8,9 +8,10 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
+from costeer.records.columns import Column
 from costeer.runtime.markers import Marker, as_json, told
 
 LARGEST_MESSAGE = 1024
@@ -278,6 +279,14 @@ def _check_names(
 def marker_shown(marker: Marker) -> dict[str, object]:
     """A marker as pages are sent it: its fields, and `text` for people."""
     return {**as_json(marker), "text": told(marker)}
+
+
+def told_of(columns: Sequence[Column]) -> dict[str, object]:
+    """What the page is told of the numbers of a frame."""
+    return {
+        "columns": [column.name for column in columns],
+        "stepped": [column.name for column in columns if column.stepped],
+    }
 
 
 def encoded(message: dict[str, object]) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -10,8 +10,9 @@ from numpy.typing import NDArray
 
 from costeer.export.markers import markers_of
 from costeer.plant.parameters import CARS, CarParameters, RoadParameters
-from costeer.records.columns import COLUMN_NAMES, MODES, TrialRecord, check_time
-from costeer.web.messages import marker_shown
+from costeer.records.checks import check_time
+from costeer.records.columns import COLUMNS, COLUMNS_BY_NAME, Column, TrialRecord
+from costeer.web.messages import marker_shown, told_of
 
 NEEDED = (
     "time",
@@ -51,10 +52,11 @@ def replay_of(record: TrialRecord, title: str) -> Replay:
             or if time does not increase.
     """
     _check(record.columns)
-    names = [name for name in COLUMN_NAMES if name in record.columns]
-    values = [_numbers(name, record.columns[name]) for name in names]
+    declared = (*COLUMNS, *record.method_columns)
+    shown = [column for column in declared if column.name in record.columns]
+    values = [_numbers(column, record.columns[column.name]) for column in shown]
     rows = np.stack(values, axis=1).astype("<f8")
-    hello = _described(record, title) | {"columns": names}
+    hello = _described(record, title) | told_of(shown)
     return Replay(hello=hello, rows=rows.tobytes())
 
 
@@ -69,8 +71,8 @@ def _check(columns: Mapping[str, Values]) -> None:
     if len(columns["time"]) < 2:
         raise ValueError("there are fewer than two rows; a replay needs a stretch")
     for name in NEEDED:
-        _check_finite(name, _numbers(name, columns[name]))
-    check_time(_numbers("time", columns["time"]))
+        _check_finite(name, _numbers(COLUMNS_BY_NAME[name], columns[name]))
+    check_time(_numbers(COLUMNS_BY_NAME["time"], columns["time"]))
 
 
 def _check_finite(name: str, values: NDArray[np.float64]) -> None:
@@ -82,33 +84,33 @@ def _check_finite(name: str, values: NDArray[np.float64]) -> None:
         )
 
 
-def _numbers(name: str, values: Values) -> NDArray[np.float64]:
-    """A column as floats: modes by their place in `MODES`, what is undefined NaN.
+def _numbers(column: Column, values: Values) -> NDArray[np.float64]:
+    """A column as floats: texts by their place among the labels, undefined is NaN.
 
     Raises:
-        ValueError: If it holds text.
+        ValueError: If it holds text that has no labels.
     """
-    if name == "mode" and values.dtype.kind == "U":
-        return _mode_numbers(values)
+    if column.labels and values.dtype.kind == "U":
+        return _places(column.labels, values)
     if values.dtype.kind not in "fiub":
-        raise ValueError(f"column {name} holds text; a replay needs numbers")
+        raise ValueError(f"column {column.name} holds text; a replay needs numbers")
     numbers = np.ma.getdata(values).astype(np.float64)
     numbers[np.ma.getmaskarray(values)] = np.nan
     return numbers
 
 
-def _mode_numbers(values: Values) -> NDArray[np.float64]:
-    """0 manual, 1 lane keeping, 2 lane changing; NaN for other words."""
+def _places(labels: Sequence[str], values: Values) -> NDArray[np.float64]:
+    """The number of each label; NaN for other words."""
     numbers = np.full(len(values), np.nan)
-    for number, mode in enumerate(MODES):
-        numbers[values == mode] = number
+    for number, label in enumerate(labels):
+        numbers[values == label] = number
     return numbers
 
 
 def _described(record: TrialRecord, title: str) -> dict[str, object]:
     """What the page is told of a record; where it tells nothing, what is usual."""
     about = record.metadata
-    time = _numbers("time", record.columns["time"])
+    time = _numbers(COLUMNS_BY_NAME["time"], record.columns["time"])
     condition, method = about.get("condition", ""), about.get("method", "")
     return {
         "mode": "replay",

@@ -23,11 +23,12 @@ from starlette.staticfiles import StaticFiles
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
-from costeer.loop.rows import ROW_COLUMNS
+from costeer.records.row import ROW_COLUMNS
 from costeer.runtime.states import page_tables
 
 STATIC = Path(__file__).parents[3] / "src" / "costeer" / "web" / "static"
 EXTRA = ("run_state", "fault", "input_sequence", "wheel_time", "sent_time", "indicator")
+STEPPED = ("lane", "mode", "event", *EXTRA)
 COLUMNS = (*ROW_COLUMNS, *EXTRA)
 RATE = 60.0
 SPEED = 20.0
@@ -66,6 +67,7 @@ class Stub:
             "mode": self.mode,
             "role": self.role,
             "columns": COLUMNS,
+            "stepped": STEPPED,
             "rate": RATE,
             "road": {**road, "overtaking_side": -1.0},
             "conditions": ["manual", "strong-normal"],

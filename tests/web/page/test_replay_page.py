@@ -73,10 +73,9 @@ def test_it_plays_between_rows_and_stops_at_the_end(page: Page) -> None:
 
 
 BUFFER = """
-  const columns = {names: ['time', 'sent_time', 'lane'], stepped: [false, true, true],
-    jumping: [false, false, false]};
+  const names = ['time', 'sent_time', 'lane'];
   return import('/js/frames.js').then(({Columns}) => {
-    const buffer = new m.StateBuffer(new Columns(columns.names), 60);
+    const buffer = new m.StateBuffer(new Columns(names, names.slice(1)), 60);
     for (let n = 0; n < 6; n++) {
       buffer.push(Float64Array.of(n / 60, 100 + n / 60, n), 500 + n / 60);
     }

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from collections.abc import Mapping
+from typing import Any, NamedTuple
 
 import pandas as pd
 
 from costeer.methods.conditions import CONDITION_NAMES
 from costeer.pages.numerals import listed, number, percent, plural
 from costeer.plant.traffic import TrafficParameters
+from costeer.study.configuration import differences
 from costeer.study.material import (
     StudyMaterial,
     conditions_driven,
@@ -175,9 +177,36 @@ def _method_sentence(material: StudyMaterial) -> str:
         "nothing here judges a network",
         "off": "not read",
     }.get(intention, intention)
-    return (
-        f"The guidance was the method {method}; the driver's intention was {reading}."
+    return " ".join(
+        [
+            f"The guidance was the method {method}; the driver's intention was "
+            f"{reading}.",
+            *_difference_sentences(configuration),
+            *_fault_sentences(material),
+        ]
     )
+
+
+def _difference_sentences(configuration: Mapping[str, Any]) -> list[str]:
+    """Say what is other than in the published study."""
+    told = [
+        f"{name} = {value}" + (f" instead of {usual}" if usual else "")
+        for name, value, usual in differences(configuration)
+    ]
+    return [f"Other than in the published study: {'; '.join(told)}."] if told else []
+
+
+def _fault_sentences(material: StudyMaterial) -> list[str]:
+    """Say whether the method asked for torques that had to be contained."""
+    counts = [int(str(each.get("torque_faults") or 0)) for each in material.metadata]
+    if not any(counts):
+        return []
+    trials = plural(sum(count > 0 for count in counts), "trial")
+    return [
+        f"In {plural(sum(counts), 'control step')} of {trials} the method asked for a "
+        "torque that was not finite or over the motor's limit; it was contained "
+        "(column torque_fault of the records)."
+    ]
 
 
 def detection_sentence(material: StudyMaterial) -> str:

@@ -61,7 +61,7 @@ export class Drive {
   /** Take over a hello: the first, and each one after a lost connection. */
   greet(hello) {
     this.hello = hello;
-    this.columns = new Columns(hello.columns);
+    this.columns = new Columns(hello.columns, hello.stepped);
     this.runStates = byCode(hello.run_states);
     this.faults = byCode(hello.faults);
     this.buffer = new StateBuffer(this.columns, hello.rate ?? 60);

@@ -4,22 +4,18 @@
  * A frame is a Float64Array; `Columns` knows which number is what.
  */
 
-/** Columns that jump: between two frames the newer one holds. */
-const STEPPED = new Set([
-  "lane", "head_yaw_valid", "target_lane", "consistent", "intention", "mode", "lead_lane",
-  "event", "driver_intention", "run_state", "fault", "input_sequence", "indicator",
-  "condition", "strength_factor", "sent_time", "wheel_time",
-]);
-
 /** A leader that is further off than this from its last place is another one [m]. */
 const LEADER_JUMP = 15;
 
 export class Columns {
-  /** @param {string[]} names */
-  constructor(names) {
+  /**
+   * @param {string[]} names
+   * @param {string[]} stepped those that jump: between two frames the newer one holds
+   */
+  constructor(names, stepped) {
     this.names = names;
     this.index = new Map(names.map((name, place) => [name, place]));
-    this.stepped = names.map((name) => STEPPED.has(name));
+    this.stepped = names.map((name) => stepped.includes(name));
     this.jumping = names.map((name) => name === "lead_distance");
   }
 

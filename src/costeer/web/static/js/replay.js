@@ -19,7 +19,7 @@ export class Replay {
    * @param {object} options of the page
    */
   constructor(hello, record, options) {
-    this.columns = new Columns(hello.columns);
+    this.columns = new Columns(hello.columns, hello.stepped);
     this.playback = new Playback(this.columns, this.columns.split(record));
     this.hud = new Hud();
     this.hud.describeKeys("replay", hello.role);

@@ -1,0 +1,85 @@
+"""`costeer parameters`: every number of the loop that can be set by name."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from costeer.cli import plug_ins
+from costeer.cli.console import print_table
+
+if TYPE_CHECKING:
+    from costeer.base.described import Described
+
+
+def parameters(
+    words: Annotated[
+        list[str] | None, typer.Argument(help="Only names that contain all of these.")
+    ] = None,
+    method: plug_ins.Method = "ibhs",
+    condition: Annotated[
+        str, typer.Option(help="manual, or strong or weak with a duration.")
+    ] = "strong-normal",
+    car: plug_ins.Car = "default",
+    assignments: plug_ins.Assignments = None,
+    file: plug_ins.ParameterFile = None,
+    json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
+) -> None:
+    """List every parameter that --set can change: value, unit, range, source.
+
+    Example:
+        costeer parameters
+        costeer parameters guidance
+        costeer parameters --method my_method.py --json
+    """
+    from costeer.loop.inputs import car_of
+    from costeer.loop.overrides import METHOD, parameter_list
+    from costeer.loop.scenario import TrialSetup, loop_parameters
+
+    setup = TrialSetup(
+        condition=condition,
+        method=method,
+        car=car_of(car),
+        parameters=plug_ins.chosen_values(file, assignments),
+    )
+    listed = [
+        each._replace(name=each.name.removeprefix(METHOD))
+        for each in parameter_list(loop_parameters(setup))
+    ]
+    shown = [each for each in listed if all(word in each.name for word in words or ())]
+    if not shown:
+        from costeer.base.described import nearest
+
+        names = [each.name for each in listed]
+        raise ValueError(
+            f"no parameter has {' and '.join(words or ())} in its name"
+            f"{nearest(' '.join(words or ()), names)}"
+        )
+    if json:
+        _print_json(shown)
+        return
+    print_table(
+        ["name", "value", "unit", "from", "to", "what", "source"],
+        [
+            [
+                each.name,
+                f"{each.value:.6g}",
+                each.unit,
+                f"{each.allowed.low:.4g}",
+                f"{each.allowed.high:.4g}",
+                each.meaning,
+                each.source,
+            ]
+            for each in shown
+        ],
+    )
+
+
+def _print_json(shown: list[Described]) -> None:
+    import json
+
+    rows = [each._asdict() | each.allowed._asdict() for each in shown]
+    for row in rows:
+        del row["allowed"]
+    typer.echo(json.dumps(rows, indent=2, ensure_ascii=False))
