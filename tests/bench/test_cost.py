@@ -82,9 +82,17 @@ def test_the_limit_does_what_it_says() -> None:
     np.testing.assert_array_equal(sums.ravel(), 3.0 * values.reshape(2, -1).sum(axis=0))
 
 
+@pytest.mark.slow  # compiles the call
 def test_no_verdict_is_computed_faster_than_the_limit() -> None:
-    limit = arithmetic_limit(20).max()
-    fastest = min(single_verdicts(random_weights(64, 1), 200).min() for _ in range(3))
+    # By turns, so that what else the machine does holds up both.
+    limits, times = zip(
+        *(
+            (arithmetic_limit(20).max(), single_verdicts(random_weights(64, 1), 200))
+            for _ in range(10)
+        ),
+        strict=True,
+    )
+    limit, fastest = max(limits), min(each.min() for each in times)
     rate = operations(verdict_cost(64)) / fastest
     # The kernel does nothing but such operations, so it cannot pass; seen: 68 to 75 %.
     # 5 % are left for a clock frequency that changes between the two.
