@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import importlib
 import os
 import random
 import signal
 from collections import defaultdict
+from contextlib import suppress
 from pathlib import Path
 
 import pytest
@@ -49,6 +51,24 @@ def pytest_report_header(config: pytest.Config) -> str:
     return "order: as written" if seed is None else f"order: --shuffle {seed}"
 
 
+def pytest_sessionstart(session: pytest.Session) -> None:
+    """Have each worker begin to import at another file.
+
+    Pytest rewrites the asserts of a file that nobody has imported yet, and leaves the
+    bytecode to the other workers: half a minute for each if all begin with the same.
+    """
+    worker = getattr(session.config, "workerinput", None)
+    folder = Path(__file__).parent
+    if worker is None or [Path(each).name for each in session.config.args] != ["tests"]:
+        return
+    files = sorted(folder.rglob("test_*.py"))
+    start = len(files) * int(worker["workerid"][2:]) // worker["workercount"]
+    for file in files[start:] + files[:start]:
+        parts = file.relative_to(folder.parent).with_suffix("").parts
+        with suppress(Exception):  # the collection tells of it
+            importlib.import_module(".".join(parts))
+
+
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(
     config: pytest.Config, items: list[pytest.Item]
@@ -82,6 +102,19 @@ def compile_once() -> None:
 
 
 compile_once()
+
+
+@pytest.fixture
+def few_resamplings(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Intervals from fifty resamplings, for tests of what else stands beside them."""
+    from costeer.training import bootstrap
+
+    whole = bootstrap.resamplings
+    monkeypatch.setattr(
+        bootstrap,
+        "resamplings",
+        lambda drivers, number, seed: whole(drivers, min(number, 50), seed),
+    )
 
 
 @pytest.fixture(scope="session")

@@ -82,7 +82,7 @@ def test_the_limit_does_what_it_says() -> None:
     np.testing.assert_array_equal(sums.ravel(), 3.0 * values.reshape(2, -1).sum(axis=0))
 
 
-@pytest.mark.slow  # compiles the call
+@pytest.mark.slow  # compiles what times a verdict
 def test_no_verdict_is_computed_faster_than_the_limit() -> None:
     # By turns, so that what else the machine does holds up both.
     limits, times = zip(
@@ -103,6 +103,7 @@ def test_a_cache_is_read_at_a_rate_that_a_machine_can_have() -> None:
     assert 1e8 < read_limit(16 * 1024, 3).max() < 1e13
 
 
+@pytest.mark.slow  # compiles what times a verdict
 def test_figures_of_a_verdict_follow_from_each_other() -> None:
     found = {
         each.name: each
@@ -118,6 +119,7 @@ def test_figures_of_a_verdict_follow_from_each_other() -> None:
     assert found["study, all cores"].median == pytest.approx(seconds)
 
 
+@pytest.mark.slow  # compiles what times a verdict
 def test_budgets_are_those_of_hidden_size_64() -> None:
     found = measure_verdict("64 units", random_weights(64, 1), 1e11, TINY)
     remarks = {each.name: each.remark for each in found if isinstance(each, Figure)}

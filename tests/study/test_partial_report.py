@@ -42,6 +42,7 @@ def words(folder: Path) -> str:
     return html.unescape(re.sub(r"<[^>]+>", " ", page))
 
 
+@pytest.mark.slow  # a report of its own
 def test_one_participant_is_reported_but_nothing_concluded(
     study_folder: Path, tmp_path: Path
 ) -> None:
@@ -64,6 +65,7 @@ def test_manual_alone_is_reported(study_folder: Path, tmp_path: Path) -> None:
     assert "No assisted trial" in text
 
 
+@pytest.mark.slow  # a report of its own
 def test_without_manual_there_is_nothing_to_compare_with(
     study_folder: Path, tmp_path: Path
 ) -> None:
@@ -129,6 +131,7 @@ def people(study_folder: Path, tmp_path: Path) -> Path:
     return folder
 
 
+@pytest.mark.slow  # a report of its own
 def test_workload_of_people_is_drawn_tested_and_no_prediction(people: Path) -> None:
     text = words(people)
     assert (people / "figures" / "tlx-raw.svg").exists()
