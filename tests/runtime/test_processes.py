@@ -25,7 +25,7 @@ from costeer.runtime.markers import Marker
 from costeer.runtime.setup import DriveSetup
 from costeer.runtime.states import Fault
 from tests.runtime.rig import drive_setup, wheel_setup
-from tests.waiting import wait_for
+from tests.waiting import PATIENCE, wait_for
 
 pytestmark = pytest.mark.usefixtures("compiled_drive")
 needs_posix = pytest.mark.skipif(os.name != "posix", reason="there are no such signals")
