@@ -24,7 +24,6 @@ from costeer.loop.realtime import (
     hands_tick,
     person_memory,
 )
-from costeer.loop.rows import ROW_COLUMNS
 from costeer.loop.scenario import TrialSetup, loop_parameters
 from costeer.loop.step import DriverNoise, initial_state, sense, step
 from costeer.loop.trial import simulate_trial
@@ -34,6 +33,7 @@ from costeer.methods.interface import Method, rule_of
 from costeer.methods.registry import METHODS
 from costeer.plant.parameters import CarParameters, ColumnParameters, RoadParameters
 from costeer.records.columns import TrialRecord
+from costeer.records.row import ROW_COLUMNS
 from costeer.sensing.measurement import Measurement
 
 
@@ -207,7 +207,7 @@ PROGRAM = """
 import sys
 from costeer.loop.parameters import LoopParameters
 from costeer.loop.realtime import control_tick, person_memory
-from costeer.loop.rows import ROW_COLUMNS
+from costeer.records.row import ROW_COLUMNS
 from costeer.methods.interface import usual_parameters
 from costeer.methods.registry import method_named
 
