@@ -63,8 +63,7 @@ def test_drive_without_a_tracker_is_judged_by_motion_alone(
     frames = frames_of(record)[:240]
     turned = frames.copy()
     turned[:, PLACE["head_yaw"]] = 0.9
-    absent = ("head_yaw",)
     there, here = (
-        Reader(RoadParameters(), absent, chosen_predictor()) for _ in range(2)
+        Reader(RoadParameters(), ("head_yaw",), chosen_predictor()) for _ in range(2)
     )
     assert [here.read(f) for f in frames][-1] == [there.read(f) for f in turned][-1]
