@@ -17,7 +17,6 @@ from costeer.base.array import Real, compiled
 from costeer.base.packing import pack
 from costeer.controller.signals import Assistance, Request
 from costeer.loop.half_step import NO_FAULT, NOT_FINITE, OVER_LIMIT
-from costeer.loop.noise import driver_noise
 from costeer.loop.realtime import (
     NOTHING_GIVEN,
     control_tick,
@@ -25,11 +24,10 @@ from costeer.loop.realtime import (
     person_memory,
 )
 from costeer.loop.scenario import TrialSetup, loop_parameters
-from costeer.loop.step import DriverNoise, initial_state, sense, step
 from costeer.loop.trial import simulate_trial
 from costeer.methods.conditions import Condition
 from costeer.methods.ibhs import IBHS
-from costeer.methods.interface import Method, rule_of
+from costeer.methods.interface import Method
 from costeer.methods.registry import METHODS
 from costeer.plant.parameters import CarParameters, ColumnParameters, RoadParameters
 from costeer.records.columns import TrialRecord
@@ -187,20 +185,14 @@ def test_two_methods_of_one_name_are_refused(
 def test_a_torque_that_cannot_be_given_is_contained_and_told(
     torque: float, fault: float, command: float
 ) -> None:
-    method = steady(torque)
-    rule = rule_of(method)
-    parameters = loop_parameters(SETUP._replace(method=method))
-    state = initial_state(rule, parameters)
-    noise = DriverNoise(*driver_noise(1, 1, "steady", 1)[0].tolist())
-    measurement = sense(parameters, state)
-    state, sample = step(rule, parameters, state, measurement, Request(), noise)
-    assert sample.method_fault == fault
-    assert state.control.torque_command == command
-    limit = max(abs(command), 1e-12)
-    torques = trial(method).columns["applied_torque"]
+    record = trial(steady(torque))
+    assert set(record.columns["torque_fault"]) == {fault}
+    num_steps = len(record.columns["torque_fault"])
+    assert record.metadata["torque_faults"] == (num_steps if fault else 0)
+    torques = record.columns["applied_torque"]
     # After five seconds the motor's lag of 20 ms is over.
     assert torques[-1] == pytest.approx(command)
-    assert np.abs(torques).max() <= limit
+    assert np.abs(torques).max() <= abs(command)
 
 
 PROGRAM = """
