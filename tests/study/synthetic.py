@@ -68,6 +68,7 @@ def synthetic_record(
     columns = _car(motion, rng) | _traffic(motion)
     columns |= _intention(motion, rng)
     columns |= _guidance(motion, columns, rng, CONDITIONS[condition])
+    columns["torque_fault"] = np.zeros(columns["time"].size, np.int8)
     ordered = {column.name: columns[column.name] for column in COLUMNS}
     return TrialRecord(_metadata(condition, participant, seed), ordered)
 
