@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from costeer.base import entry
+from costeer.base import entry, plugins
 from costeer.base.entry import COMPILED_ROOMS, cache_folder, source_hash
 
 EQUATION = """
@@ -42,7 +42,8 @@ def write_package(folder: Path, factor: float) -> None:
         (package / room).mkdir(parents=True, exist_ok=True)
         (package / room / "__init__.py").touch()
     (package / "__init__.py").touch()
-    shutil.copy(entry.__file__, package / "base" / "entry.py")
+    for module in (entry, plugins):
+        shutil.copy(module.__file__, package / "base")
     (package / "plant" / "equation.py").write_text(EQUATION.format(factor=factor))
     (package / "loop" / "main.py").write_text(LOOP)
 

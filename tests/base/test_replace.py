@@ -1,4 +1,4 @@
-"""`record._replace(field=value)` means the same in every engine."""
+"""`record._replace(field=value)` and `Record(field=value)` mean the same compiled."""
 
 from __future__ import annotations
 
@@ -51,7 +51,12 @@ def in_either_order(record: Outer, value: Real) -> tuple[Outer, Outer]:
     return record._replace(a=value, b=7), record._replace(b=7, a=value)
 
 
-CHANGES = (with_a, with_b, with_inner_y, in_either_order)
+@compiled
+def made_anew(record: Outer, value: Real) -> tuple[Outer, Outer]:
+    return Outer(b=value), Outer(record.b, inner=Inner(y=value))
+
+
+CHANGES = (with_a, with_b, with_inner_y, in_either_order, made_anew)
 FAST = [numba.njit(change) for change in CHANGES]
 
 

@@ -47,6 +47,7 @@ def test_the_drivers_to_choose_by_change_lanes() -> None:
     assert transfer._two_parts(quiet) == (quiet, quiet)
 
 
+@pytest.mark.usefixtures("few_resamplings")
 def test_the_network_stands_beside_what_learned_from_people(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:

@@ -17,10 +17,11 @@ import pytest
 from costeer.cli import drive as command
 from costeer.cli import main
 from costeer.records.record import read_record
-from costeer.runtime.frame import FRAME_COLUMNS
+from costeer.runtime.frame import FRAME_COLUMNS, PLACE
 from costeer.runtime.markers import Marker
 from costeer.web.drive import DriveOnPages, PageOptions
 from tests.runtime.rig import drive_setup
+from tests.waiting import PATIENCE
 
 
 @pytest.fixture(autouse=True)
@@ -100,17 +101,20 @@ def test_frames_and_markers_go_to_lsl_with_the_time_of_their_making(
             sent.append(marker)
 
     monkeypatch.setattr("costeer.export.lsl.TrialOutlet", Outlet)
-    monkeypatch.setattr("costeer.export.lsl.lsl_clock", lambda: time.perf_counter() + 5)
     session = DriveOnPages(drive_setup(), None, PageOptions())
-    command.send_to_lsl(session)
+    with monkeypatch.context() as clocks:
+        clocks.setattr("time.perf_counter", lambda: 100.0)
+        clocks.setattr("costeer.export.lsl.lsl_clock", lambda: 105.0)
+        command.send_to_lsl(session)
     session._tell(np.full(len(FRAME_COLUMNS), 2.0))
     session._mark(Marker("paused", "driver"))
     session.stop()
     assert sent[0][0] == [2.0] * len(FRAME_COLUMNS)
-    assert sent[0][1] == pytest.approx(7.0, abs=0.01)
+    assert sent[0][1] == 7.0
     assert sent[1] == Marker("paused", "driver")
 
 
+@pytest.mark.usefixtures("compiled_drive")
 @pytest.mark.skipif(os.name != "posix", reason="there is no such signal")
 @pytest.mark.parametrize("how", [signal.SIGINT, signal.SIGTERM], ids=["Ctrl-C", "term"])
 def test_stopped_command_leaves_a_whole_record_and_no_process(
@@ -127,11 +131,11 @@ def test_stopped_command_leaves_a_whole_record_and_no_process(
     ) as process:
         assert process.stdout is not None
         address = process.stdout.readline().split()[-1]
-        drive_a_second(address)
+        drive_a_while(address)
         process.send_signal(how)
         time.sleep(0.05)
         process.send_signal(how)  # who is impatient loses nothing
-        out, err = process.communicate(timeout=60)
+        out, err = process.communicate(timeout=PATIENCE)
     assert process.returncode == 0
     assert "Traceback" not in err
     assert "leaked" not in err
@@ -139,17 +143,22 @@ def test_stopped_command_leaves_a_whole_record_and_no_process(
     assert read_record(record).columns["time"][-1] > 0.5
 
 
-def drive_a_second(address: str) -> None:
-    """Be the page: start, and say a word now and then."""
+def drive_a_while(address: str) -> None:
+    """Be the page: start, and say a word at every frame until a second has passed."""
     from websockets.sync.client import connect
 
     url = address.replace("http", "ws", 1) + "ws"
     with connect(url, origin=address.rstrip("/")) as page:  # type: ignore[arg-type]  # a plain text is an origin
-        page.recv(timeout=20)
+        page.recv(timeout=PATIENCE)
         page.send('{"type":"start"}')
-        for sequence in range(12):
+        sequence, now = 0, 0.0
+        while now < 1.0:
             page.send(
                 f'{{"type":"input","sequence":{sequence},"steer":0,'
                 '"accelerator":0,"brake":0}'
             )
-            time.sleep(0.1)
+            sequence += 1
+            if isinstance(frames := page.recv(timeout=PATIENCE), bytes):
+                now = np.frombuffer(frames).reshape(-1, len(FRAME_COLUMNS))[
+                    -1, PLACE["time"]
+                ]

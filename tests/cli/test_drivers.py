@@ -64,6 +64,7 @@ def report(folder: Path, participants: int, jobs: int) -> int:
     return drivers(*asked, "--jobs", str(jobs), "--out", str(folder))
 
 
+@pytest.mark.slow  # the whole validation, if of one driver
 def test_a_report_tells_its_progress_and_prints_the_targets(
     tmp_path: Path,
     monkeypatch: pytest.MonkeyPatch,

@@ -19,6 +19,8 @@ from costeer.training import simulation
 from costeer.training.recordings import Recording
 from tests.training.synthetic import columns, drives
 
+pytestmark = pytest.mark.usefixtures("few_resamplings")
+
 
 @pytest.fixture(scope="module")
 def source(tmp_path_factory: pytest.TempPathFactory) -> Path:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import subprocess
 import sys
-import time
 
 import pytest
 
@@ -21,14 +20,14 @@ def run_python(code: str) -> subprocess.CompletedProcess[str]:
     return subprocess.run(words, capture_output=True, text=True, check=True)
 
 
-def test_help_takes_under_a_second_and_a_half() -> None:
-    # Measured 0.10 s alone; the bound leaves room for a busy machine. Best of three.
-    durations = []
-    for _ in range(3):
-        start = time.perf_counter()
-        run_python("from costeer.cli import main; main(['--help'])")
-        durations.append(time.perf_counter() - start)
-    assert min(durations) < 1.5
+def test_help_takes_under_half_a_second_of_a_processor() -> None:
+    # Measured 0.10 s. Waiting for a processor does not count; best of three.
+    code = (
+        "import time; from costeer.cli import main; main(['--help']); "
+        "print(time.process_time())"
+    )
+    took = [float(run_python(code).stdout.splitlines()[-1]) for _ in range(3)]
+    assert min(took) < 0.5
 
 
 def test_help_imports_nothing_heavy() -> None:

@@ -16,6 +16,7 @@ import pytest
 from costeer.cli import main
 from costeer.records.record import write_record
 from tests.study.synthetic import synthetic_record
+from tests.waiting import PATIENCE
 
 
 @pytest.fixture(scope="module")
@@ -36,10 +37,10 @@ def test_it_prints_the_address_answers_and_stops_at_ctrl_c(trial: Path) -> None:
         line = process.stdout.readline()
         found = re.search(r"http://127\.0\.0\.1:\d+/", line)
         assert found, line
-        with urllib.request.urlopen(f"{found[0]}api/hello", timeout=30) as answer:
+        with urllib.request.urlopen(f"{found[0]}api/hello", timeout=PATIENCE) as answer:
             hello = json.load(answer)
         process.send_signal(signal.SIGINT)
-        _, errors = process.communicate(timeout=30)
+        _, errors = process.communicate(timeout=PATIENCE)
     assert (hello["mode"], hello["title"]) == ("replay", "trial.parquet")
     assert process.returncode == 130
     assert errors == "costeer: stopped\n"

@@ -17,7 +17,7 @@ from tests.study.fakes import contents, made_up
 
 TINY = StudySettings(
     participants=1,
-    conditions=("manual", "weak-gentle"),
+    conditions=("manual", "weak-gentle", "weak-rapid"),
     intention="scripted",
     length=1800.0,
 )
@@ -48,18 +48,21 @@ def test_records_alone_bring_back_every_byte(
     shown = capsys.readouterr()
     assert shown.out == f"{bare / 'report.html'}\n"
     assert "report: " in shown.err
+    assert "without" not in shown.err  # nothing is lacking
 
 
-def test_a_half_written_record_is_not_believed(
+def test_half_written_and_missing_records_are_named_and_not_believed(
     bare: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     record = bare / "records" / "01-manual.parquet"
     record.write_bytes(record.read_bytes()[:1000])
+    (bare / "records" / "01-weak-gentle.parquet").unlink()
     assert main(["report", str(bare)]) == 0
     told = capsys.readouterr().err
-    assert "without records/01-manual.parquet (damaged or of another study);" in told
+    assert "records/01-manual.parquet (damaged or of another study)" in told
+    assert "01-weak-gentle.parquet (missing)" in told
     page = (bare / "report.html").read_text("utf-8")
-    assert "not complete: 1 of 2 trials are there" in page
+    assert "not complete: 1 of 3 trials are there" in page
 
 
 def test_answers_of_people_are_kept(whole: Path, tmp_path: Path) -> None:
@@ -95,18 +98,3 @@ def test_a_study_that_is_running_is_left_alone(
     with locked(bare):
         assert main(["report", str(bare)]) == 2
     assert "in use by another costeer" in capsys.readouterr().err
-
-
-def test_a_missing_record_is_named(
-    bare: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    (bare / "records" / "01-weak-gentle.parquet").unlink()
-    assert main(["report", str(bare)]) == 0
-    assert "01-weak-gentle.parquet (missing);" in capsys.readouterr().err
-
-
-def test_a_whole_study_lacks_nothing(
-    bare: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    assert main(["report", str(bare)]) == 0
-    assert "without" not in capsys.readouterr().err

@@ -13,6 +13,8 @@ from costeer.intention.gru import hidden_size
 from costeer.intention.weights import load_weights
 from tests.training.synthetic import columns
 
+pytestmark = pytest.mark.usefixtures("few_resamplings")
+
 
 def table(path: Path, num_drivers: int = 3, without: str = "") -> Path:
     """Short drives of several participants in one CSV."""

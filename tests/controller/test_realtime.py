@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
+import pytest
 
 from costeer.base.packing import pack, packed
 from costeer.controller import step as controller
@@ -19,6 +20,9 @@ from costeer.controller.realtime import (
 from costeer.controller.signals import Request
 from costeer.controller.step import ControllerParameters
 from costeer.sensing.measurement import Measurement
+
+# Drives and trials run another entry; this one, for benchmarks, compiles for long.
+pytestmark = pytest.mark.slow
 
 DT = 1.0 / 60.0
 PARAMETERS = ControllerParameters()

@@ -11,10 +11,9 @@ import pytest
 
 from costeer.export.lsl import MARKER_TYPE, STATE_TYPE, TrialOutlet, lsl_clock
 from costeer.runtime.markers import Marker
+from tests.waiting import PATIENCE
 
 COLUMNS = {"time": "s", "driver_torque": "N·m", "haptic_gain": "-"}
-PATIENCE = 30.0
-"""How long a stream may take to be found [s]; usually half a second."""
 
 
 @pytest.fixture

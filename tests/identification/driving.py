@@ -48,7 +48,7 @@ def recorded(participant: int, length: float = 8000.0) -> TrialRecord:
 @cache
 def recorded_with(friction: float) -> TrialRecord:
     """A trial without leaders on a wheel with this dry friction [N·m]."""
-    setup = manual_setup(1, 3000.0)._replace(events=False)
+    setup = manual_setup(1, 1600.0)._replace(events=False)
     parameters = loop_parameters(setup)
     column = parameters.column._replace(friction=friction)
     rows = rollout(

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import math
 from functools import cache
+from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 import numpy as np
@@ -19,7 +21,7 @@ from costeer.intention.features import (
 )
 from costeer.intention.gru import NetworkWeights, random_weights
 from costeer.intention.wavefront import crossing_probabilities
-from costeer.intention.weights import intention_network
+from costeer.intention.weights import intention_network, save_weights
 from costeer.loop.scenario import TrialSetup
 from costeer.loop.tick import intention_sample
 from costeer.loop.trial import simulate_trial
@@ -54,7 +56,10 @@ def test_a_lost_head_is_no_number_to_the_network(lane: float, turn: float) -> No
 @cache
 def columns(needs_all: bool) -> dict[str, NDArray[Any]]:
     weights = NEEDS_ALL if needs_all else DOES_WITHOUT
-    record = simulate_trial(SETUP, network=intention_network(weights, {}))
+    with TemporaryDirectory() as folder:
+        file = Path(folder) / "network.npz"
+        save_weights(file, intention_network(weights, {}))
+        record = simulate_trial(SETUP._replace(weights=str(file)))
     return {name: np.ma.getdata(values) for name, values in record.columns.items()}
 
 

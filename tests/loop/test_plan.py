@@ -12,13 +12,12 @@ from numpy.typing import NDArray
 from costeer.base.bezier import Quintic, path_point
 from costeer.controller.step import ControllerParameters
 from costeer.drivers.driver import DriverNoise
-from costeer.intention.wavefront import initial_state as network_memory
 from costeer.loop.noise import driver_noise
 from costeer.loop.parameters import DT, LoopParameters
 from costeer.loop.scenario import PILOT_SEED, TrialSetup, loop_parameters
 from costeer.loop.step import initial_state
 from costeer.loop.tick import INTENTION_SCRIPTED, Script, tick
-from costeer.loop.trial import idle_weights
+from costeer.loop.trial import idle_network
 from costeer.methods.ibhs import IBHS
 from costeer.methods.interface import rule_of
 
@@ -78,13 +77,13 @@ def changes(participant: int, follows_plan: float) -> Changes:
     parameters = parameters_of(participant, follows_plan)
     state = initial_state(RULE, parameters)
     script = Script(INTENTION_SCRIPTED, 3.0, np.zeros(0))
-    network = idle_weights(), network_memory(idle_weights())
+    network = idle_network()
     found = Changes([], [], [])
     for draws in driver_noise(PILOT_SEED, participant, "pilot", round(30.0 / DT)):
         before, noise = state, DriverNoise(*draws.tolist())
-        state, row = tick(RULE, parameters, state, script, *network, noise)
+        state, sample = tick(RULE, parameters, state, script, network, noise)
         own, system = state.driver.tracking.path, state.control.method.trajectory.path
-        speed = row.motion.longitudinal_velocity
+        speed = sample.measurement.longitudinal_velocity
         if own != before.driver.tracking.path:
             found.driver.append(Change(before.control.time, own.length / speed, own))
             found.drawn.append(state.driver.decision.change_duration)

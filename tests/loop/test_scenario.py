@@ -17,16 +17,27 @@ from costeer.loop.scenario import (
 )
 from costeer.plant.parameters import CARS
 
-STRONG = TrialSetup(condition="strong-normal", strength_factor=1.0)
+STRONG = TrialSetup(condition="strong-normal")
+OWN = {"condition": "own", "strength_factor": 0.7}
 
 REFUSED = {
-    "strength_factor is 1.5; give a number from 0.0 to 1.0": {"strength_factor": 1.5},
+    "strength_factor is 1.5; give a number from 0 to 1": OWN | {"strength_factor": 1.5},
+    "condition strong-normal has strength_factor 1, not 0.4; leave": {
+        "strength_factor": 0.4
+    },
+    "condition strong-normal has change_duration 6, not 4; leave": {
+        "change_duration": 4.0
+    },
+    "unknown condition 'strong-nomal' (did you mean strong-normal?); choose": {
+        "condition": "strong-nomal"
+    },
+    "unknown condition 'weak-normel' (did you mean weak-normal?); choose": OWN
+    | {"condition": "weak-normel"},
+    "unknown condition 'own'; choose from manual": {"condition": "own"},
     "length is 50.0; give a number from 100.0 to 200000.0 m": {"length": 50.0},
     "speed is 80.0; give a number from 12.0 to 31.0 m/s": {"speed": 80.0},
     "speed is nan; give a number from 12.0 to 31.0 m/s": {"speed": math.nan},
     "initial_offset is -2.0; give a number": {"initial_offset": -2.0},
-    "hold_time is -1.0; give a number from 0.0 to 10.0 s": {"hold_time": -1.0},
-    "inconsistency_threshold is inf; give": {"inconsistency_threshold": math.inf},
     "prediction_horizon is 0.0; give": {"prediction_horizon": 0.0},
     "participant is -1; give a number from 0": {"participant": -1},
     "seed is -5; give a number from 0": {"seed": -5},
@@ -35,10 +46,8 @@ REFUSED = {
     "abandoned_share is nan; give a number": {"abandoned_share": math.nan},
     "wander_factor is -1; give a number from 0.0 to 5.0": {"wander_factor": -1},
     "wander_factor is 5.1; give a number": {"wander_factor": 5.1},
-    "change_duration is nan; give a number from 1 to 30 s": {
-        "change_duration": math.nan
-    },
-    "change_duration is 60.0; give a number": {"change_duration": 60.0},
+    "change_duration is 60; give a number from 1 to 30 s": OWN
+    | {"change_duration": 60.0},
     "trigger time -3.0 is not possible; give seconds": {"trigger_times": (-3.0,)},
     "trigger time nan is not possible": {"trigger_times": (math.nan,)},
     "car 'lorry' is not known; choose one of default, compact": {"car": "lorry"},
@@ -55,8 +64,21 @@ def test_a_setup_that_cannot_be_run_is_refused_by_name(message: str) -> None:
     assert str(error.value).startswith(message)
 
 
-def test_manual_needs_no_change_duration() -> None:
-    check_setup(TrialSetup(change_duration=math.nan))
+def test_a_condition_says_strength_and_duration_by_its_name() -> None:
+    controller = loop_parameters(STRONG).controller
+    assert controller.actuation.strength_factor == 1.0
+    assert controller.trajectory.change_duration == 6.0
+    same = STRONG._replace(strength_factor=1.0, change_duration=6.0)
+    assert loop_parameters(same) == loop_parameters(STRONG)
+
+
+def test_a_condition_of_ones_own_says_them_itself() -> None:
+    own = STRONG._replace(**OWN)
+    controller = loop_parameters(own).controller
+    assert controller.actuation.strength_factor == 0.7
+    assert controller.trajectory.change_duration == 6.0  # the method's own
+    gentle = loop_parameters(own._replace(change_duration=8.0)).controller
+    assert gentle.trajectory.change_duration == 8.0
 
 
 def test_the_pilot_drivers_are_no_participants() -> None:
@@ -67,7 +89,8 @@ def test_the_pilot_drivers_are_no_participants() -> None:
 
 def test_a_trial_is_assisted_if_method_and_strength_give_torque() -> None:
     assert is_assisted(STRONG)
-    assert not is_assisted(STRONG._replace(strength_factor=0.0))
+    assert not is_assisted(STRONG._replace(**OWN | {"strength_factor": 0.0}))
+    assert not is_assisted(TrialSetup())
     assert not is_assisted(STRONG._replace(method="manual"))
     manual = loop_parameters(STRONG._replace(method="manual"))
     assert manual.controller.actuation.strength_factor == 0.0
@@ -81,31 +104,18 @@ def test_the_controller_knows_the_car_that_is_driven(name: str) -> None:
     assert gain == pytest.approx(0.45 * CARS[name].aligning_stiffness)
 
 
-def test_a_setup_reaches_every_stage() -> None:
-    setup = STRONG._replace(
-        change_duration=4.0,
-        hold_time=0.2,
-        look_ahead=True,
-        inconsistency_threshold=0.5,
-        length=500.0,
-        initial_offset=0.5,
-        events=False,
-        plant_steps=16,
+def test_a_setup_reaches_road_start_and_plant() -> None:
+    parameters = loop_parameters(
+        STRONG._replace(length=500.0, initial_offset=0.5, events=False, plant_steps=16)
     )
-    parameters = loop_parameters(setup)
-    controller = parameters.controller
-    assert controller.trajectory.change_duration == 4.0
-    assert controller.consistency.hold_time == 0.2
-    assert controller.consistency.inconsistency_threshold == 0.5
-    assert controller.preview.look_ahead is True
-    assert parameters.road.length == 500.0
+    assert parameters.road.length == parameters.controller.road.length == 500.0
     assert parameters.start.lateral_offset == 0.5
     assert parameters.start.events == 0.0
     assert parameters.plant_steps == 16
 
 
 def test_the_driver_follows_from_seed_and_participant_alone() -> None:
-    other = STRONG._replace(condition="weak-gentle", strength_factor=0.4, car="large")
+    other = STRONG._replace(condition="weak-gentle", car="large")
     assert trial_driver(STRONG) == trial_driver(other)
     assert trial_driver(STRONG) != trial_driver(STRONG._replace(participant=2))
     assert trial_driver(STRONG._replace(driver="hands-off")).arm.hands_on == 0.0

@@ -3,24 +3,23 @@
 from __future__ import annotations
 
 import json
-import math
 from functools import cache
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 from costeer.intention.gru import random_weights
-from costeer.intention.weights import intention_network
+from costeer.intention.weights import intention_network, save_weights
 from costeer.loop.scenario import TrialSetup
 from costeer.loop.trial import simulate_trial, trial_duration
 from costeer.records.columns import COLUMNS, TrialRecord
 from costeer.records.metadata import METADATA_FIELDS
 
-MANUAL = TrialSetup(seed=3, intention="off", length=1800.0, change_duration=math.nan)
+MANUAL = TrialSetup(seed=3, intention="off", length=1800.0)
 STRONG = TrialSetup(
     seed=3,
     condition="strong-normal",
-    strength_factor=1.0,
     intention="scripted",
     length=1800.0,
 )
@@ -187,10 +186,13 @@ def test_no_intention_is_asked_when_it_is_off() -> None:
     assert not columns["intention"].any()
 
 
-def test_a_network_that_is_given_is_asked_and_named() -> None:
+def test_a_network_that_is_given_is_asked_and_named(tmp_path: Path) -> None:
     network = intention_network(random_weights(4, 1), {})
-    setup = STRONG._replace(intention="network", length=200.0)
-    record = simulate_trial(setup, network=network)
+    save_weights(tmp_path / "network.npz", network)
+    setup = STRONG._replace(
+        intention="network", length=200.0, weights=str(tmp_path / "network.npz")
+    )
+    record = simulate_trial(setup)
     assert record.metadata["intention_model_hash"] == network.hash
     probability = record.columns["crossing_probability"]
     assert np.isnan(probability[:179]).all()  # no verdict before the window is full
@@ -210,7 +212,7 @@ def test_metadata_says_what_was_run() -> None:
 
 
 def test_another_setting_gives_another_configuration_hash() -> None:
-    other = STRONG._replace(hold_time=0.2)
+    other = STRONG._replace(parameters=(("consistency.hold_time", 0.2),))
     hashes = {trial(s).metadata["configuration_hash"] for s in (STRONG, other, MANUAL)}
     assert len(hashes) == 3
 

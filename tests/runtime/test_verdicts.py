@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from costeer.intention.predictors.chosen import chosen_predictor
 from costeer.loop.scenario import TrialSetup
 from costeer.loop.trial import simulate_trial
 from costeer.plant.parameters import RoadParameters
@@ -33,7 +34,7 @@ def record() -> dict[str, NDArray[np.float64]]:
 def test_verdicts_over_frames_are_those_of_the_trial(
     record: dict[str, NDArray[np.float64]],
 ) -> None:
-    reader = Reader(RoadParameters(), ())
+    reader = Reader(RoadParameters(), (), chosen_predictor())
     verdicts = [reader.read(frame) for frame in frames_of(record)]
     np.testing.assert_array_equal(verdicts, record["crossing_probability"])
     assert (record["lane"] == 0).any()  # both sides were part of it
@@ -44,7 +45,7 @@ def test_gap_and_restart_begin_a_new_window(
     record: dict[str, NDArray[np.float64]],
 ) -> None:
     frames = frames_of(record)[:400]
-    reader = Reader(RoadParameters(), ())
+    reader = Reader(RoadParameters(), (), chosen_predictor())
     for frame in frames[:200]:
         before = reader.read(frame)
     after_gap = [reader.read(frame) for frame in frames[205:390]]
@@ -62,5 +63,7 @@ def test_drive_without_a_tracker_is_judged_by_motion_alone(
     frames = frames_of(record)[:240]
     turned = frames.copy()
     turned[:, PLACE["head_yaw"]] = 0.9
-    there, here = (Reader(RoadParameters(), ("head_yaw",)) for _ in range(2))
+    there, here = (
+        Reader(RoadParameters(), ("head_yaw",), chosen_predictor()) for _ in range(2)
+    )
     assert [here.read(f) for f in frames][-1] == [there.read(f) for f in turned][-1]

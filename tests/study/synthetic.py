@@ -13,7 +13,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from costeer.records.record import COLUMNS, TrialRecord
+from costeer.records.columns import COLUMNS, TrialRecord
+from costeer.records.row import record_columns
 
 Signal = NDArray[np.float64]
 
@@ -68,9 +69,8 @@ def synthetic_record(
     columns = _car(motion, rng) | _traffic(motion)
     columns |= _intention(motion, rng)
     columns |= _guidance(motion, columns, rng, CONDITIONS[condition])
-    columns["torque_fault"] = np.zeros(columns["time"].size, np.int8)
-    ordered = {column.name: columns[column.name] for column in COLUMNS}
-    return TrialRecord(_metadata(condition, participant, seed), ordered)
+    blank = record_columns(np.zeros((motion.time.size, len(COLUMNS))), assisted=False)
+    return TrialRecord(_metadata(condition, participant, seed), blank | columns)
 
 
 def quintic(progress: Signal) -> Signal:
@@ -182,7 +182,7 @@ def _guidance(
     num_rows = motion.time.size
     effort = 3.0 * car["steering_wheel_angle"] + smooth_noise(rng, num_rows, 0.4, 0.1)
     if strength[0] == 0.0:
-        return _no_guidance(num_rows) | {"driver_torque": effort}
+        return {"driver_torque": effort}
     disputed = _disputed(motion)
     gain = faded_gain(~disputed)
     mode = np.full(num_rows, "lane_keeping", dtype="<U13")
@@ -209,27 +209,6 @@ def _guidance(
         "mode": mode,
         "target_lane": np.ma.MaskedArray(target, mask=False),
         "target_lateral_position": motion.lateral - 0.1 * error,
-    }
-
-
-def _no_guidance(num_rows: int) -> dict[str, np.ndarray]:
-    undefined = [
-        "estimated_driver_torque",
-        "instructed_torque",
-        "haptic_gain",
-        "lateral_error",
-        "heading_error_rate",
-        "guidance_pseudo_work",
-        "driver_pseudo_work",
-        "torque_agreement",
-        "target_lateral_position",
-    ]
-    columns: dict[str, np.ndarray] = {k: np.full(num_rows, np.nan) for k in undefined}
-    return columns | {
-        "applied_torque": np.zeros(num_rows),
-        "consistent": np.ma.MaskedArray(np.ones(num_rows, bool), mask=True),
-        "target_lane": np.ma.MaskedArray(np.zeros(num_rows, np.int8), mask=True),
-        "mode": np.full(num_rows, "manual"),
     }
 
 

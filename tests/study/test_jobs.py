@@ -9,6 +9,7 @@ import time
 import pytest
 
 from costeer.study.jobs import JobsStoppedError, default_jobs, run_jobs
+from tests.waiting import PATIENCE
 
 
 def ignore(_: int) -> None:
@@ -16,8 +17,12 @@ def ignore(_: int) -> None:
 
 
 def test_results_come_in_the_order_of_the_tasks() -> None:
+    ended = [threading.Event() for _ in range(6)]
+    ended[5].set()
+
     def work(task: int) -> int:
-        time.sleep(0.02 * (5 - task))
+        assert ended[task + 1].wait(PATIENCE)  # the last task ends first
+        ended[task].set()
         return task * task
 
     assert run_jobs(work, range(5), 5, ignore) == [0, 1, 4, 9, 16]
@@ -25,7 +30,7 @@ def test_results_come_in_the_order_of_the_tasks() -> None:
 
 def test_jobs_run_side_by_side() -> None:
     # Each waits for the other; alone, the first would wait for ever.
-    barrier = threading.Barrier(2, timeout=10.0)
+    barrier = threading.Barrier(2, timeout=PATIENCE)
     run_jobs(lambda _: barrier.wait(), range(2), 2, ignore)
 
 
@@ -50,8 +55,8 @@ def test_after_a_failure_no_task_is_begun() -> None:
         run_jobs(work, range(100), 1, ignore)
     assert isinstance(caught.value.__cause__, ZeroDivisionError)
     assert caught.value.failed == 1
-    # One more may have begun while the failure was noticed.
-    assert len(begun) <= 3
+    # A few more begin until the failure is noticed, 50 ms each; all would take 5 s.
+    assert len(begun) < 50
     assert caught.value.num_done == len(begun) - 1
 
 
@@ -70,7 +75,7 @@ def test_tasks_that_run_at_an_interruption_are_finished() -> None:
         run_jobs(work, range(50), 2, interrupt)
     assert isinstance(caught.value.__cause__, KeyboardInterrupt)
     assert caught.value.failed is None
-    assert caught.value.num_done == len(finished) < 10
+    assert caught.value.num_done == len(finished) < 50
 
 
 def test_no_task_is_no_work() -> None:

@@ -5,12 +5,12 @@ from __future__ import annotations
 import signal
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import pytest
 
 from tests.study.fakes import NUM_TRIALS, contents, run_small
+from tests.waiting import PATIENCE, wait_for
 
 ROOT = Path(__file__).parents[2]
 
@@ -37,12 +37,20 @@ run_study(out, SMALL, jobs=1, simulate=simulate)
 SLOW = """
 import sys, time
 from functools import partial
+from pathlib import Path
 from costeer.cli import main
 from costeer.study import run
 from tests.study.fakes import made_up, plain_report
 
+count = 0
+
 def slow(setup):
-    time.sleep(0.3)
+    # The second trial runs until Ctrl-C has been pressed.
+    global count
+    count += 1
+    while count == 2 and not Path(sys.argv[2]).exists():
+        time.sleep(0.01)
+    time.sleep(1.0 if count > 2 else 0.0)
     return made_up(setup)
 
 run.full_report = plain_report
@@ -55,13 +63,6 @@ sys.exit(main(["study", "--out", sys.argv[1], "--participants", "2", "--conditio
 
 def command(script: str, out: Path) -> list[str]:
     return [sys.executable, "-c", script, str(out)]
-
-
-def wait_for(file: Path) -> None:
-    deadline = time.monotonic() + 60.0
-    while not file.exists():
-        assert time.monotonic() < deadline, f"{file} never came"
-        time.sleep(0.02)
 
 
 def test_a_killed_study_goes_on_where_it_was(tmp_path: Path) -> None:
@@ -77,12 +78,17 @@ def test_a_killed_study_goes_on_where_it_was(tmp_path: Path) -> None:
 @pytest.mark.skipif(sys.platform == "win32", reason="no SIGINT for one process there")
 def test_ctrl_c_ends_with_130_and_says_how_to_resume(tmp_path: Path) -> None:
     out, whole = tmp_path / "out", tmp_path / "whole"
+    pressed = tmp_path / "pressed"
     process = subprocess.Popen(
-        command(SLOW, out), cwd=ROOT, stderr=subprocess.PIPE, text=True
+        [*command(SLOW, out), str(pressed)],
+        cwd=ROOT,
+        stderr=subprocess.PIPE,
+        text=True,
     )
-    wait_for(out / "records" / "01-manual.parquet")
+    wait_for((out / "records" / "01-manual.parquet").exists)
     process.send_signal(signal.SIGINT)
-    _, said = process.communicate(timeout=60)
+    pressed.touch()
+    _, said = process.communicate(timeout=PATIENCE)
     assert process.returncode == 130
     assert "of 6 trials are done and kept in" in said
     assert "run the same command again" in said

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from math import isnan, pi, sqrt
 
 import numpy as np
@@ -215,14 +214,3 @@ def test_a_mirrored_trial_has_the_same_lane_change_measures(
         assert b["direction"] == -int(str(a["direction"]))
         for name in ("duration", "overshoot", "steering_velocity_rms"):
             assert b[name] == pytest.approx(a[name], rel=1e-9)
-
-
-def test_a_trial_is_measured_in_a_fraction_of_a_second() -> None:
-    # About 7 ms here; 84 trials of a study must not be felt. Ten times is slack for
-    # a machine that is busy.
-    record = synthetic_record("strong-normal")
-    trial_row(record)
-    start = time.perf_counter()
-    trial_row(record)
-    lane_change_rows(record)
-    assert time.perf_counter() - start < 0.1

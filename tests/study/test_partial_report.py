@@ -42,6 +42,7 @@ def words(folder: Path) -> str:
     return html.unescape(re.sub(r"<[^>]+>", " ", page))
 
 
+@pytest.mark.slow  # a report of its own
 def test_one_participant_is_reported_but_nothing_concluded(
     study_folder: Path, tmp_path: Path
 ) -> None:
@@ -64,6 +65,7 @@ def test_manual_alone_is_reported(study_folder: Path, tmp_path: Path) -> None:
     assert "No assisted trial" in text
 
 
+@pytest.mark.slow  # a report of its own
 def test_without_manual_there_is_nothing_to_compare_with(
     study_folder: Path, tmp_path: Path
 ) -> None:
@@ -72,35 +74,36 @@ def test_without_manual_there_is_nothing_to_compare_with(
     assert "This participant has no manual trial to compare with." in text
 
 
-def test_a_participant_without_a_cell_is_named(
-    study_folder: Path, tmp_path: Path
-) -> None:
-    missing = (3, "weak-rapid")
-    folder = part(study_folder, tmp_path / "g", lambda *key: key != missing)
-    text = words(folder)
-    assert "20 of 21 trials" in text
-    assert "Mixed models with participant as random effect" in text
-    assert "Dropped data" in text
-
-
-def test_a_crossing_that_is_no_lane_change_is_named_with_its_reason(
-    study_folder: Path, tmp_path: Path
-) -> None:
-    folder = part(study_folder, tmp_path / "d", lambda *_: True)
+@pytest.fixture(scope="module")
+def with_a_gap(study_folder: Path, tmp_path_factory: pytest.TempPathFactory) -> str:
+    """Words of a study without one trial, and with two crossings dropped of another."""
+    folder = tmp_path_factory.mktemp("gap") / "study"
+    part(study_folder, folder, lambda *key: key != (3, "weak-rapid"))
     trials = pd.read_csv(folder / TRIALS_FILE)
     dropped = pd.Series([None] * len(trials), dtype=object)
     dropped[4] = "9.50 s: started before the record; 99.25 s: crossed back within 3 s"
     trials.assign(dropped_changes=dropped).to_csv(folder / TRIALS_FILE, index=False)
-    text = " ".join(words(folder).split())
+    return " ".join(words(folder).split())
+
+
+def test_a_participant_without_a_cell_is_named(with_a_gap: str) -> None:
+    assert "20 of 21 trials" in with_a_gap
+    assert "Mixed models with participant as random effect" in with_a_gap
+    assert "Dropped data" in with_a_gap
+
+
+def test_a_crossing_that_is_no_lane_change_is_named_with_its_reason(
+    with_a_gap: str, study_folder: Path
+) -> None:
+    trials = pd.read_csv(study_folder / TRIALS_FILE)
     where = f"{trials['participant'][4]} {trials['condition'][4]}, crossing at"
-    assert f"{where} 9.50 s started before the record" in text
-    assert f"{where} 99.25 s crossed back within 3 s" in text
-    assert "No data had to be dropped" not in text
+    assert f"{where} 9.50 s started before the record" in with_a_gap
+    assert f"{where} 99.25 s crossed back within 3 s" in with_a_gap
+    assert "No data had to be dropped" not in with_a_gap
 
 
-def test_the_page_says_what_is_made_again(study_folder: Path, tmp_path: Path) -> None:
-    text = " ".join(words(part(study_folder, tmp_path / "p", lambda *_: True)).split())
-    assert "makes all but the records again; with people it leaves" in text
+def test_the_page_says_what_is_made_again(with_a_gap: str) -> None:
+    assert "makes all but the records again; with people it leaves" in with_a_gap
 
 
 def test_nobody_changing_lanes_is_reported(study_folder: Path, tmp_path: Path) -> None:
@@ -128,6 +131,7 @@ def people(study_folder: Path, tmp_path: Path) -> Path:
     return folder
 
 
+@pytest.mark.slow  # a report of its own
 def test_workload_of_people_is_drawn_tested_and_no_prediction(people: Path) -> None:
     text = words(people)
     assert (people / "figures" / "tlx-raw.svg").exists()

@@ -117,6 +117,7 @@ def test_it_says_what_kind_of_drivers_these_are(page: str) -> None:
     assert "no subjective workload" in page
 
 
+@pytest.mark.slow  # a report of its own
 def test_the_same_folder_gives_the_same_bytes_wherever_it_lies(
     reported: Path, tmp_path: Path
 ) -> None:

@@ -12,12 +12,12 @@ from hypothesis import strategies as st
 from costeer.study.crossings import LEFT, RIGHT, excursion, in_left_lane
 from costeer.study.definitions import MeasureParameters
 from costeer.study.segments import Segments, segment
+from tests.records.mirror import mirrored
 from tests.study.shapes import (
     WIDTH,
     Columns,
     changes,
     duration_above_yaw,
-    mirrored,
     peak_yaw,
 )
 

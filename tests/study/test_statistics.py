@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable
+from functools import cache
 
 import numpy as np
 import pandas as pd
@@ -14,6 +15,12 @@ from costeer.methods.conditions import CONDITION_NAMES
 from costeer.study.outcome import EffectRow, PairRow, StudyTests
 from costeer.study.statistics import MEASURES, study_tests
 from tests.study.made_up_study import Columns, made_up_study, without
+
+
+@cache
+def usual_outcome() -> StudyTests:
+    """What is found in the study that most tests look at."""
+    return study_tests(*made_up_study())
 
 
 def effect(
@@ -46,7 +53,7 @@ def silent_gaps(found: StudyTests) -> list[object]:
 
 def test_degrees_of_freedom_are_those_of_the_paper() -> None:
     trials, changes = made_up_study()
-    everything = study_tests(trials, changes)
+    everything = usual_outcome()
     torque = effect(everything, "driver_torque_rms", "published")
     assert (torque.df1, torque.df2, torque.n) == (6.0, 77.0, 84)
     # 672 planned, 13 short: F(6, 652); 11 of them with guidance: F(2, 559).
@@ -63,7 +70,7 @@ def test_degrees_of_freedom_are_those_of_the_paper() -> None:
 
 
 def test_every_measure_has_both_sets_of_tests() -> None:
-    found = study_tests(*made_up_study())
+    found = usual_outcome()
     keys = [row[:3] for row in found.tests]
     assert len(keys) == len(set(keys))
     for measure in MEASURES:
@@ -86,8 +93,8 @@ def test_every_measure_has_both_sets_of_tests() -> None:
 
 
 def test_published_comparison_is_that_of_scipy_on_all_values() -> None:
-    trials, changes = made_up_study()
-    found = study_tests(trials, changes)
+    _, changes = made_up_study()
+    found = usual_outcome()
     values = {
         name: changes["overshoot"][changes["condition"] == name].astype(float)
         for name in CONDITION_NAMES
@@ -109,8 +116,8 @@ def test_published_comparison_is_that_of_scipy_on_all_values() -> None:
 
 
 def test_within_comparison_is_that_of_scipy_on_participants_means() -> None:
-    trials, changes = made_up_study()
-    found = study_tests(trials, changes)
+    _, changes = made_up_study()
+    found = usual_outcome()
     means = (
         pd.DataFrame(changes).groupby(["condition", "participant"])["overshoot"].mean()
     )
@@ -123,8 +130,8 @@ def test_within_comparison_is_that_of_scipy_on_participants_means() -> None:
 
 
 def test_strength_of_lane_keeping_is_compared_in_three_pairs() -> None:
-    trials, changes = made_up_study()
-    found = study_tests(trials, changes)
+    trials, _ = made_up_study()
+    found = usual_outcome()
     strong = np.char.startswith(trials["condition"].astype(str), "strong")
     manual = trials["condition"] == "manual"
     expected = stats.ttest_ind(
@@ -153,7 +160,7 @@ def test_order_of_rows_changes_nothing() -> None:
         for table in (trials, changes)
         for order in [rng.permutation(table["participant"].size)]
     ]
-    expected = numbers(study_tests(trials, changes))
+    expected = numbers(usual_outcome())
     # Sums in another order differ in the last digits; limits come from a root search.
     np.testing.assert_allclose(
         numbers(study_tests(*shuffled)), expected, rtol=1e-8, atol=1e-12
@@ -167,7 +174,7 @@ def test_names_of_participants_change_nothing() -> None:
         for table in (trials, changes)
         for column in [table["participant"]]
     ]
-    expected = numbers(study_tests(trials, changes))
+    expected = numbers(usual_outcome())
     np.testing.assert_allclose(
         numbers(study_tests(*renamed)), expected, rtol=1e-8, atol=1e-12
     )
@@ -177,7 +184,7 @@ def test_names_of_participants_change_nothing() -> None:
 def test_unit_of_a_measure_does_not_change_its_tests(scale: float) -> None:
     trials, changes = made_up_study()
     scaled = {**changes, "overshoot": changes["overshoot"].astype(float) * scale}
-    one, other = study_tests(trials, changes), study_tests(trials, scaled)
+    one, other = usual_outcome(), study_tests(trials, scaled)
     for name in ("condition", "strength", "strength:change_duration"):
         for analysis in ("published", "within"):
             before = effect(one, "overshoot", analysis, name)
@@ -190,7 +197,7 @@ def test_unit_of_a_measure_does_not_change_its_tests(scale: float) -> None:
 
 
 def test_same_data_give_the_same_numbers() -> None:
-    assert repr(study_tests(*made_up_study())) == repr(study_tests(*made_up_study()))
+    assert repr(study_tests(*made_up_study())) == repr(usual_outcome())
 
 
 def test_missing_trial_is_named_and_left_out_where_it_is_needed() -> None:

@@ -12,7 +12,8 @@ from costeer.study.detection import EARLY, FALSE, TRUE
 from costeer.study.trial_measures import prepare
 from costeer.study.trigger_costs import COST_COLUMNS, Row, trigger_costs
 from costeer.study.trigger_episodes import MISSED
-from tests.study.shapes import SPEED, Columns, changes, mirrored
+from tests.records.mirror import mirrored
+from tests.study.shapes import SPEED, Columns, changes
 from tests.study.synthetic import faded_gain
 
 DT = 1.0 / 60.0

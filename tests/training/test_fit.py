@@ -109,6 +109,7 @@ def test_the_curve_holds_each_look_and_the_best_is_kept(learned: Fit) -> None:
     assert learned.best.validation_log_loss == lowest
 
 
+@pytest.mark.slow  # a training of its own
 def test_shuffled_labels_teach_nothing() -> None:
     data, scale = data_of(drives(6))
     order = np.random.default_rng(0).permutation(len(data.ends))

@@ -16,9 +16,7 @@ from costeer.web.messages import Message
 from costeer.web.security import Access, access_for
 from costeer.web.serving import Running, serve
 from costeer.web.session import Broadcast, Role
-
-PATIENCE = 20.0
-"""How long a test waits for what takes milliseconds [s]: the machine may be busy."""
+from tests.waiting import PATIENCE
 
 
 class FakeSession:
@@ -30,7 +28,6 @@ class FakeSession:
         self.joined: list[Role] = []
         self.left: list[Role] = []
         self.full = False
-        self.somebody_left = threading.Event()
 
     def hello(self, role: Role) -> dict[str, object]:
         """A hello with a number that JSON has not."""
@@ -52,7 +49,6 @@ class FakeSession:
     def client_left(self, role: Role) -> None:
         """Remember who left."""
         self.left.append(role)
-        self.somebody_left.set()
 
 
 class Answer(NamedTuple):

@@ -20,7 +20,8 @@ from costeer.web.messages import Input, Set, Start
 from costeer.web.pages import file_in, start_page, static_folder
 from costeer.web.serving import Running, listening
 from costeer.web.session import MOST_FRAMES, Outbox
-from tests.web.served import PATIENCE, FakeSession, fetch, page_files, served, socket_of
+from tests.waiting import PATIENCE, wait_for
+from tests.web.served import FakeSession, fetch, page_files, served, socket_of
 
 
 @pytest.fixture(scope="module")
@@ -230,14 +231,14 @@ def test_a_huge_message_closes_the_socket_unread(running: Running) -> None:
     assert caught.value.rcvd.code == 1009
 
 
-def test_the_session_hears_that_a_page_left(
-    running: Running, session: FakeSession
-) -> None:
-    session.somebody_left.clear()
-    with socket_of(running) as socket:
-        told(socket)
-        assert not session.somebody_left.is_set()
-    assert session.somebody_left.wait(PATIENCE)
+def test_the_session_hears_that_a_page_left(static: Path) -> None:
+    session = FakeSession()  # no page of another test can leave it
+    with served(lambda access: drive_app(session, access, static)) as running:
+        with socket_of(running) as socket:
+            told(socket)
+            assert session.left == []
+        wait_for(lambda: session.left)
+    assert session.left == ["driver"]
 
 
 def test_a_page_that_may_not_join_is_told_why(static: Path) -> None:
@@ -254,6 +255,8 @@ def test_a_page_that_may_not_join_is_told_why(static: Path) -> None:
 
 
 def test_no_more_pages_than_allowed(running: Running, session: FakeSession) -> None:
+    wait_for(lambda: not session.broadcast.num_pages)  # those of other tests are gone
+
     async def crowd() -> list[Outbox]:
         return [session.broadcast.join() for _ in range(MOST_PAGES)]
 

@@ -1,15 +1,17 @@
-"""`record._replace(field=value)` in code that Numba compiles, as in Python.
+"""Named tuples in code that Numba compiles, as in Python.
 
-A named tuple is changed by naming what is new. Copying the other fields by hand would
-forget the one that is added next year, and no type checker would notice.
+`record._replace(field=value)` changes one by naming what is new. Copying the other
+fields by hand would forget the one that is added next year, and no type checker would
+notice. `Record(field=value)` leaves to the others what the class says.
 """
 
 from __future__ import annotations
 
-from typing import Any, TypeVar
+from typing import Any, TypeVar, cast
 
 from numba import types as numba_types
-from numba.core import errors, imputils
+from numba.core import errors, imputils, utils
+from numba.core.typing import collections, templates, typeof
 from numba.core.typing.templates import (
     AbstractTemplate,
     AttributeTemplate,
@@ -22,6 +24,9 @@ Record = TypeVar("Record")
 # Any, here and below: Numba types neither its types nor its decorators.
 types: Any = numba_types
 _lowers: Any = imputils.lower_builtin
+_templates: Any = templates
+_typeof: Any = typeof.typeof
+_namedtuple_class: Any = collections.NamedTupleClassAttribute
 
 _KEY = (types.BaseNamedTuple, "_replace")
 
@@ -118,3 +123,43 @@ def _lower_replace(context: Any, builder: Any, signature: Any, arguments: Any) -
     call = context.get_function(function, signature)
     context.add_linking_libs(getattr(call, "libs", ()))
     return call(builder, arguments)
+
+
+def _made(kind: Any, args: Any, kws: Any) -> Any:
+    """The signature of making a named tuple, defaults standing in for what is left out.
+
+    Raises:
+        TypingError: If a field without a default is left out, or a name is no field.
+    """
+    fields = cast("Any", utils).pysignature(kind)
+    given = _templates.fold_arguments(
+        fields,
+        args,
+        kws,
+        lambda index, field, value: types.unliteral(value),
+        lambda index, field, default: _typeof(default),
+        None,
+    )
+    made = types.BaseTuple.from_types(given, kind)
+    return _templates.signature(made, *given).replace(pysig=fields)
+
+
+_usual_call = _namedtuple_class.resolve___call__
+
+
+def _resolve_call(attribute: Any, made: Any) -> Any:
+    """Types `Record(...)`; Numba itself does so only if no field is left out."""
+    (whole,) = _usual_call(attribute, made).templates
+
+    class Partial(AbstractTemplate):
+        key = whole.key
+
+        def generic(self, args: Any, kws: Any) -> Any:
+            is_whole = len(args) + len(kws) == len(made.instance_class._fields)
+            return None if is_whole else _made(made.instance_class, args, kws)
+
+    return types.Function((Partial, whole))
+
+
+# Without it the fields that are left out would be missing, and no error would say so.
+_namedtuple_class.resolve___call__ = _resolve_call

@@ -167,12 +167,14 @@ def send_to_lsl(session: DriveOnPages) -> None:
     import time
 
     from costeer.export.lsl import TrialOutlet, lsl_clock
-    from costeer.runtime.frame import FRAME, PLACE
+    from costeer.runtime.frame import PLACE
 
-    outlet = TrialOutlet({column.name: column.unit for column in FRAME})
+    outlet = TrialOutlet({column.name: column.unit for column in session.columns})
     later = lsl_clock() - time.perf_counter()
     session.also(
-        lambda frame: outlet.push(frame.tolist(), frame[PLACE["sent_time"]] + later),
+        lambda frame: outlet.push(
+            frame[: len(session.columns)].tolist(), frame[PLACE["sent_time"]] + later
+        ),
         outlet.mark,
     )
 

@@ -98,7 +98,7 @@ def begun(
         try:
             trial = compiled_once(_compiled_trial, method)
             count: int = trial(numbers, now, script, network, noise, rows)
-        except (errors.NumbaError, AssertionError) as error:
+        except errors.NumbaError as error:
             raise ValueError(cannot_compile(method, error)) from error
         return count
 
@@ -159,7 +159,6 @@ def cannot_compile(method: Method[P, S], error: Exception) -> str:
     reasons = [line for line in told if not line.startswith(("-", "File", "During"))]
     return (
         f"method '{method.name}' cannot be compiled: {'; '.join(reasons[-4:])}. Each "
-        "of its functions, and each function they call, is marked @compiled; a named "
-        "tuple is made with all of its fields, or changed by record._replace(...); "
+        "of its functions, and each function they call, is marked @compiled; "
         "costeer.testing.check_method says more"
     )

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from costeer.devices.head.process import run_head_process
 from costeer.devices.wheels.registry import emergency_stop
 from costeer.runtime.clock import favour_thread
-from costeer.runtime.frame import FRAME_COLUMNS, PLACE
+from costeer.runtime.frame import PLACE, WIDTH
 from costeer.runtime.keeper import Keeper
 from costeer.runtime.links import Links
 from costeer.runtime.markers import Marker
@@ -50,7 +50,7 @@ class Listener(NamedTuple):
     """Who is told what happens; called from threads of the drive.
 
     Attributes:
-        frame: Every frame, columns as `FRAME_COLUMNS`.
+        frame: Every frame, columns as `frame.frame_columns`.
         marker: What happened and when.
     """
 
@@ -314,7 +314,7 @@ class Drive:
         """Say that the real-time process is gone; what was driven is kept."""
         self._out_of_order = Fault.LOOP_GONE.text
         _, frames = self.shared.frames.since(self.shared.frames.written - 1)
-        last = frames[-1] if len(frames) else np.full(len(FRAME_COLUMNS), np.nan)
+        last = frames[-1] if len(frames) else np.full(WIDTH, np.nan)
         last[PLACE["run_state"]] = RunState.PAUSED
         last[PLACE["fault"]] = Fault.LOOP_GONE
         self._listener.frame(last)

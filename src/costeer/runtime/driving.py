@@ -27,7 +27,7 @@ from costeer.plant.road import adjacent_side
 from costeer.records.row import ROW_COLUMNS
 from costeer.runtime.cabin import Cabin, Controls
 from costeer.runtime.choices import Choices
-from costeer.runtime.frame import FRAME_COLUMNS
+from costeer.runtime.frame import FRAME, WIDTH, absent
 from costeer.runtime.indicator import Indicator
 from costeer.runtime.links import Links
 from costeer.runtime.markers import Kind, Marker
@@ -38,7 +38,12 @@ from costeer.runtime.patience import (
     VERDICT_PATIENCE,
     WHEEL_PATIENCE,
 )
-from costeer.runtime.setup import DriveSetup, drive_parameters, leader_draws
+from costeer.runtime.setup import (
+    DriveSetup,
+    drive_columns,
+    drive_parameters,
+    leader_draws,
+)
 from costeer.runtime.shared import Shared
 from costeer.runtime.states import Fault, RunState
 from costeer.runtime.trace import Tracer
@@ -89,7 +94,8 @@ class Driving:
         self._cabin = Cabin(setup)
         self._road = drive_parameters(setup).road
         self._draws = leader_draws(setup)
-        self._frame = np.full(len(FRAME_COLUMNS), np.nan)
+        self._frame = np.full(WIDTH, np.nan)
+        self._own = np.array([absent(c) for c in drive_columns(setup)])
         self._choices = Choices(self._cabin, setup, self._mark)
         self._indicator = Indicator(self._mark)
         self.stopping = False
@@ -209,7 +215,10 @@ class Driving:
     def _tell(self, row: Any, lateness: float) -> None:  # Any: an array of float64
         """Put a frame into the ring and wake the server."""
         frame = self._frame
-        frame[: len(ROW_COLUMNS)] = row
+        frame[: len(ROW_COLUMNS)] = row[: len(ROW_COLUMNS)]
+        added = row[len(ROW_COLUMNS) :]
+        last = slice(len(FRAME), len(FRAME) + len(self._own))
+        frame[last] = added if len(added) == len(self._own) else self._own
         if self._run_state != RunState.RUNNING:
             frame[_ANGLE] = self._cabin.steering_wheel_angle
         reading = self._cabin.reading
@@ -228,7 +237,7 @@ class Driving:
             self._choices.number,
             self._indicator.side,
         )
-        frame[len(ROW_COLUMNS) :] = extra
+        frame[len(ROW_COLUMNS) : len(FRAME)] = extra
         self._frames.put(frame)
         with suppress(OSError):
             self._links.wake.send(b"f")

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Sequence
+
 from costeer.records.columns import COLUMNS, Column
 
 
@@ -31,6 +34,23 @@ FRAME = (*COLUMNS, *EXTRA_COLUMNS)
 
 FRAME_COLUMNS = tuple(column.name for column in FRAME)
 """Their names."""
+
+MOST_METHOD_COLUMNS = 16
+"""As many columns of its own a method may have in a drive: what is kept for them."""
+
+WIDTH = len(FRAME) + MOST_METHOD_COLUMNS
+"""Numbers of a frame; the method's own are the last, and may be fewer."""
+
+
+def frame_columns(added: Sequence[Column]) -> tuple[Column, ...]:
+    """The numbers of a frame with those that a method adds."""
+    return (*FRAME, *added)
+
+
+def absent(column: Column) -> float:
+    """What a method's column is while another method runs."""
+    return 0.0 if column.labels else math.nan
+
 
 PLACE = {name: place for place, name in enumerate(FRAME_COLUMNS)}
 """Where each stands."""

@@ -15,7 +15,7 @@ from costeer.runtime.choices import (
 )
 from costeer.runtime.markers import Marker
 from costeer.runtime.recorder import Recorder, drive_metadata
-from costeer.runtime.setup import DriveSetup
+from costeer.runtime.setup import DriveSetup, drive_columns
 from costeer.runtime.shared import Shared
 from costeer.runtime.stream import RecordStream, finish, next_free, record_paths
 
@@ -80,7 +80,7 @@ class Keeper:
                 chosen_setup(self._setup, self._chosen),
                 chosen_parameters(self._setup, self._chosen),
             )
-            stream = RecordStream(paths, described)
+            stream = RecordStream(paths, described, drive_columns(self._setup))
         except (OSError, ValueError) as error:
             self._tell(f"the record cannot be written: {error}")
             return

@@ -13,8 +13,9 @@ from costeer.base.described import described
 from costeer.loop.parameters import LoopParameters
 from costeer.loop.scenario import is_assisted
 from costeer.loop.trial import trial_metadata, trial_predictor
+from costeer.records.columns import COLUMNS
 from costeer.records.metadata import PERSON
-from costeer.runtime.frame import PLACE
+from costeer.runtime.frame import FRAME, PLACE
 from costeer.runtime.markers import Marker
 from costeer.runtime.setup import DriveSetup, drive_parameters
 from costeer.runtime.shared import Shared
@@ -129,7 +130,10 @@ class Recorder:
             markers, self._markers = self._markers, []
         if len(rows) or markers:
             assisted = rows[:, PLACE["strength_factor"]] > 0.0
-            self.stream.write(rows, assisted, markers)
+            own = rows[:, len(FRAME) :]
+            self.stream.write(
+                np.hstack([rows[:, : len(COLUMNS)], own]), assisted, markers
+            )
         self._next_trace, traced = self._shared.trace.since(self._next_trace)
         traced = self._of_this_trial(traced)
         if len(traced):

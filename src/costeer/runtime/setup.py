@@ -19,6 +19,8 @@ from costeer.methods.conditions import condition as condition_named
 from costeer.methods.ibhs import IBHS
 from costeer.methods.manual import MANUAL
 from costeer.methods.registry import AnyMethod, method_named
+from costeer.records.columns import Column
+from costeer.runtime.frame import MOST_METHOD_COLUMNS
 
 PLANT_STEPS = 16
 """Plant steps in a control step with a person: 960 Hz."""
@@ -64,6 +66,11 @@ def check_drive(setup: DriveSetup) -> None:
     """
     loop_parameters(setup.trial)
     offered_methods(setup)
+    if len(drive_columns(setup)) > MOST_METHOD_COLUMNS:
+        raise ValueError(
+            f"the method adds {len(drive_columns(setup))} columns; a drive takes up to "
+            f"{MOST_METHOD_COLUMNS}"
+        )
     if not isinstance(setup.trial.predictor, str):
         raise ValueError(
             "a drive runs in processes of its own; give its predictor by its name, as "
@@ -113,6 +120,14 @@ def offered_methods(setup: DriveSetup) -> dict[str, str]:
 def drive_method(setup: DriveSetup) -> AnyMethod:
     """The method whose functions the loop of a drive calls."""
     return trial_method(setup.trial)
+
+
+def drive_columns(setup: DriveSetup) -> tuple[Column, ...]:
+    """What the method of a drive adds to its record; empty while another one runs."""
+    return tuple(
+        each._replace(nullable=each.kind in ("int8", "bool"))
+        for each in method_named(setup.trial.method).columns
+    )
 
 
 def under(setup: DriveSetup, condition: str, method: str) -> DriveSetup:

@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from costeer.runtime.frame import FRAME_COLUMNS, TRACE_COLUMNS
+from costeer.runtime.frame import TRACE_COLUMNS, WIDTH
 
 FRAME_ROWS = 1024
 """Frames kept: 17 s at 60 Hz."""
@@ -125,7 +125,7 @@ class Shared(NamedTuple):
     Attributes:
         memory: To be closed, and unlinked by the process that made it.
         mailbox: Newest values.
-        frames: At 60 Hz, columns as `FRAME_COLUMNS`.
+        frames: At 60 Hz, columns as `frame.frame_columns`.
         trace: Of the wheel at the plant's rate, columns as `TRACE_COLUMNS`.
     """
 
@@ -139,7 +139,7 @@ def _ring_size(rows: int, columns: int) -> int:
     return 1 + rows * (columns + 2)
 
 
-_FRAMES = _ring_size(FRAME_ROWS, len(FRAME_COLUMNS))
+_FRAMES = _ring_size(FRAME_ROWS, WIDTH)
 _TRACE = _ring_size(TRACE_ROWS, len(TRACE_COLUMNS))
 _TOTAL = len(MAILBOX) + _FRAMES + _TRACE
 
@@ -188,7 +188,7 @@ def _view(memory: SharedMemory) -> Shared:
     return Shared(
         memory=memory,
         mailbox=Mailbox(mailbox),
-        frames=Ring(rest[:_FRAMES], FRAME_ROWS, len(FRAME_COLUMNS)),
+        frames=Ring(rest[:_FRAMES], FRAME_ROWS, WIDTH),
         trace=Ring(rest[_FRAMES:], TRACE_ROWS, len(TRACE_COLUMNS)),
     )
 

@@ -227,7 +227,9 @@ def finish(paths: RecordPaths, num_rows: int) -> bool:
         paths.trace_stream.unlink(missing_ok=True)
         return False
     record = read_stream(paths.stream)
-    write_record(paths.record, record)
+    faults = int(np.count_nonzero(record.columns["torque_fault"]))
+    about = {**record.metadata, "torque_faults": faults}
+    write_record(paths.record, record._replace(metadata=about))
     _finish_trace(paths)
     paths.stream.unlink()
     paths.trace_stream.unlink(missing_ok=True)

@@ -23,12 +23,13 @@ from costeer.runtime.choices import (
     tuned_values,
 )
 from costeer.runtime.drive import Drive, Listener
-from costeer.runtime.frame import FRAME, PLACE
+from costeer.runtime.frame import PLACE, frame_columns
 from costeer.runtime.markers import Marker
 from costeer.runtime.patience import PAGE_PATIENCE
 from costeer.runtime.setup import (
     PLANT_DT,
     DriveSetup,
+    drive_columns,
     drive_method,
     drive_parameters,
     offered_methods,
@@ -95,6 +96,7 @@ class DriveOnPages:
         self._options = options
         self._num_drivers = 0
         self._chosen = first_choice(setup)
+        self.columns = frame_columns(drive_columns(setup))
         self.drive = Drive(setup, record, Listener(self._tell, self._mark))
 
     def also(
@@ -114,7 +116,8 @@ class DriveOnPages:
         self._late.take(frame)
         for other in self._others:
             other.frame(frame)
-        self.broadcast.send_frame(frame.astype("<f8", copy=False).tobytes())
+        shown = frame[: len(self.columns)]
+        self.broadcast.send_frame(shown.astype("<f8", copy=False).tobytes())
 
     def _mark(self, marker: Marker) -> None:
         """Pass a marker on, and what it changed."""
@@ -161,7 +164,7 @@ class DriveOnPages:
         road, car = parameters.road, parameters.car
         return {
             "mode": "drive",
-            **told_of(FRAME),
+            **told_of(self.columns),
             "rate": FRAME_RATE,
             "road": road._asdict(),
             "car": {

@@ -82,9 +82,17 @@ def test_the_limit_does_what_it_says() -> None:
     np.testing.assert_array_equal(sums.ravel(), 3.0 * values.reshape(2, -1).sum(axis=0))
 
 
+@pytest.mark.slow  # compiles what times a verdict
 def test_no_verdict_is_computed_faster_than_the_limit() -> None:
-    limit = arithmetic_limit(20).max()
-    fastest = min(single_verdicts(random_weights(64, 1), 200).min() for _ in range(3))
+    # By turns, so that what else the machine does holds up both.
+    limits, times = zip(
+        *(
+            (arithmetic_limit(20).max(), single_verdicts(random_weights(64, 1), 200))
+            for _ in range(10)
+        ),
+        strict=True,
+    )
+    limit, fastest = max(limits), min(each.min() for each in times)
     rate = operations(verdict_cost(64)) / fastest
     # The kernel does nothing but such operations, so it cannot pass; seen: 68 to 75 %.
     # 5 % are left for a clock frequency that changes between the two.
@@ -95,6 +103,7 @@ def test_a_cache_is_read_at_a_rate_that_a_machine_can_have() -> None:
     assert 1e8 < read_limit(16 * 1024, 3).max() < 1e13
 
 
+@pytest.mark.slow  # compiles what times a verdict
 def test_figures_of_a_verdict_follow_from_each_other() -> None:
     found = {
         each.name: each
@@ -110,6 +119,7 @@ def test_figures_of_a_verdict_follow_from_each_other() -> None:
     assert found["study, all cores"].median == pytest.approx(seconds)
 
 
+@pytest.mark.slow  # compiles what times a verdict
 def test_budgets_are_those_of_hidden_size_64() -> None:
     found = measure_verdict("64 units", random_weights(64, 1), 1e11, TINY)
     remarks = {each.name: each.remark for each in found if isinstance(each, Figure)}

@@ -31,6 +31,7 @@ def figures(outcome: Outcome) -> list[Figure]:
     return [found for found in outcome if isinstance(found, Figure)]
 
 
+@pytest.mark.slow  # compiles the control step alone
 def test_the_control_step_is_judged_by_its_budget() -> None:
     p50, p99, p999 = figures(measure_control_step(TINY))
     assert p50.unit == p99.unit == p999.unit == "us"
@@ -44,6 +45,7 @@ def test_the_control_step_keeps_its_budget() -> None:
     assert p99.median < CONTROL_STEP_BUDGET
 
 
+@pytest.mark.slow  # compiles what times a verdict
 def test_the_network_is_measured_by_size_and_as_shipped() -> None:
     groups = list(
         dict.fromkeys(found.group for found in figures(measure_network(TINY)))
@@ -53,6 +55,7 @@ def test_the_network_is_measured_by_size_and_as_shipped() -> None:
     assert groups[-1].startswith("verdict, shipped, ")
 
 
+@pytest.mark.slow  # compiles what times a verdict
 def test_a_damaged_network_is_a_named_line(monkeypatch: pytest.MonkeyPatch) -> None:
     def damaged() -> None:
         raise ValueError("the shipped network was altered")

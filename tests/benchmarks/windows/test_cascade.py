@@ -15,6 +15,9 @@ from costeer.intention.kernel import TILE
 from tests.intention.lively import lively_weights, needy_weights, signals
 from tests.intention.test_kernel import in_python, pair_in_numpy
 
+# It takes half a minute to compile, and no command of a user runs it.
+pytestmark = pytest.mark.slow
+
 SIZES = (3, 8, 20, 33)
 
 

@@ -22,8 +22,10 @@ from costeer.intention.gru import crossing_probability
 from costeer.intention.wavefront import crossing_probabilities
 from tests.intention.lively import lively_weights, signals
 
+# Each form is compiled anew, and no command of a user runs them.
+pytestmark = pytest.mark.slow
 
-@pytest.mark.slow  # compiles each form anew
+
 def test_windows_that_start_at_every_sample_are_the_exact_ones() -> None:
     weights, features = lively_weights(16), signals(700)
     features[300, 2] = np.nan
@@ -67,7 +69,6 @@ def test_a_carried_state_is_the_window_at_the_first_verdict_and_no_more() -> Non
     assert abs(carried[-1] - fresh) < 2e-6
 
 
-@pytest.mark.slow  # compiles each form anew
 def test_every_form_has_verdicts_where_the_exact_one_has() -> None:
     weights, features = lively_weights(8), signals(500)
     known = forms(weights, gates=(0.1,))

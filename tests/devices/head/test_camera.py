@@ -17,9 +17,7 @@ from costeer.devices.head.process import run_head_process
 from costeer.devices.head.source import HeadDescription, HeadLost, HeadReading
 from tests.devices.head.films import film
 from tests.devices.head.rendering import View, cabin, render
-
-PATIENCE = 60.0
-"""How long a busy machine may take to start a process [s]."""
+from tests.waiting import PATIENCE
 
 
 @pytest.fixture(scope="module")

@@ -13,6 +13,7 @@ from costeer.devices.wheels import hid, logitech
 from costeer.devices.wheels.calibration import WheelCalibration
 from costeer.devices.wheels.hid import HidWheel, hid_model, hid_wheels, stop_hid
 from costeer.devices.wheels.interface import Wheel, WheelDescription, WheelLost
+from tests.waiting import PATIENCE, wait_for
 
 DESCRIPTION = WheelDescription("hid", "path", "Logitech G29", "046d-c24f-hid")
 MODEL = logitech.MODELS[0xC24F]
@@ -28,8 +29,6 @@ CALIBRATION = WheelCalibration(
 )
 OPENING = ["0d", "f5", "f88184", "11"]
 ALL_STOP = ["13", "23", "43", "83", "f5"]
-ENOUGH = 5.0
-"""Time after which a thread that has not answered never will, on any machine [s]."""
 
 
 class RecordingTransport:
@@ -47,7 +46,7 @@ class RecordingTransport:
     def write(self, command: bytes) -> None:
         """Take a command, once nobody holds the line."""
         self.entered.set()
-        self.held.wait(ENOUGH)
+        self.held.wait(PATIENCE)
         if self.gone:
             raise OSError("write error")
         self.written.append(command)
@@ -76,7 +75,7 @@ def opened(transport: RecordingTransport) -> HidWheel:
 
 def loss(use: Callable[[], object]) -> str:
     """Do something until the wheel is lost; return what is said."""
-    last = time.perf_counter() + ENOUGH
+    last = time.perf_counter() + PATIENCE
     while time.perf_counter() < last:
         try:
             use()
@@ -84,14 +83,6 @@ def loss(use: Callable[[], object]) -> str:
             return str(error)
         time.sleep(0.001)
     return "not lost"
-
-
-def until(met: Callable[[], bool]) -> None:
-    """Wait for another thread."""
-    last = time.perf_counter() + ENOUGH
-    while not met():
-        assert time.perf_counter() < last
-        time.sleep(0.001)
 
 
 def starts(commands: list[bytes], wanted: list[str]) -> list[str]:
@@ -125,7 +116,7 @@ def test_a_torque_is_a_refreshed_constant_force(torque: float, byte: int) -> Non
     transport = RecordingTransport(report())
     wheel = opened(transport)
     wheel.write(torque)
-    until(lambda: len(transport.written) > len(OPENING))
+    wait_for(lambda: len(transport.written) > len(OPENING))
     assert transport.written[len(OPENING)] == bytes([0x1C, 0, byte, 0, 0, 0, 0])
     wheel.close()
 
@@ -135,7 +126,7 @@ def test_what_is_no_finite_torque_is_sent_as_none(torque: float) -> None:
     transport = RecordingTransport(report())
     wheel = opened(transport)
     wheel.write(torque)
-    until(lambda: len(transport.written) > len(OPENING))
+    wait_for(lambda: len(transport.written) > len(OPENING))
     assert transport.written[len(OPENING)] == logitech.constant(0, 0)
     wheel.close()
 
@@ -145,7 +136,7 @@ def test_a_force_that_is_not_refreshed_is_taken_off_once() -> None:
     wheel = opened(transport)
     start = time.perf_counter()
     wheel.write(1.0)
-    until(lambda: len(transport.written) > len(OPENING) + 1)
+    wait_for(lambda: len(transport.written) > len(OPENING) + 1)
     assert time.perf_counter() - start >= 0.2
     time.sleep(0.25)
     forces = transport.written[len(OPENING) :]
@@ -159,15 +150,16 @@ def test_a_slow_transfer_neither_holds_the_loop_nor_queues_old_torques() -> None
     transport.held.clear()
     transport.entered.clear()
     wheel.write(2.0)
-    assert transport.entered.wait(ENOUGH)  # the thread stands in the transfer
+    assert transport.entered.wait(PATIENCE)  # the thread stands in the transfer
     start = time.perf_counter()
     for _ in range(100):
         wheel.write(-1.0)
     wheel.write(1.0)
-    assert time.perf_counter() - start < ENOUGH / 10.0
+    assert time.perf_counter() - start < PATIENCE / 10.0
     transport.held.set()
-    until(lambda: len(transport.written) >= len(OPENING) + 2)
-    assert [c[2] for c in transport.written[len(OPENING) :]] == [0xFF, 0xC0]
+    wait_for(lambda: len(transport.written) >= len(OPENING) + 2)
+    # On a busy machine the zero of a stale force may have followed already.
+    assert [c[2] for c in transport.written[len(OPENING) :][:2]] == [0xFF, 0xC0]
     wheel.close()
 
 

@@ -72,10 +72,8 @@ def test_closing_stops_and_erases_the_effect_once(seen: dict[str, Seen]) -> None
 
 
 def test_the_effect_is_started_again_before_it_dies(seen: dict[str, Seen]) -> None:
-    starts = seen["refreshes"].log.count("force code=0x0 value=1")
-    # At once, then each 100 ms: five times in 450 ms; a loaded machine may lose some,
-    # but one a write would be about two hundred.
-    assert 2 <= starts <= 5
+    # It lives 200 ms and is written every one of 450 ms: at once, then each 100 ms.
+    assert seen["refreshes"].log.count("force code=0x0 value=1") == 5
 
 
 def test_axes_and_buttons_come_back_in_our_units(seen: dict[str, Seen]) -> None:
@@ -129,8 +127,6 @@ def test_signals_stay_pythons(seen: dict[str, Seen]) -> None:
 
 
 def test_a_reading_and_a_torque_take_well_under_a_tick(seen: dict[str, Seen]) -> None:
-    median, most_work = seen["hurries"].result
     # Measured 35 µs; a tick of 960 Hz is 1.04 ms. Waiting for a processor is no work,
-    # so that a loaded machine does not count.
-    assert median < 5e-4
-    assert most_work < 1e-3
+    # so that a loaded machine does not count; benchmarks judge the rare slow ones.
+    assert seen["hurries"].result < 5e-4

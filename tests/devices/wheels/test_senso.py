@@ -18,6 +18,7 @@ from costeer.devices.wheels.interface import Wheel, WheelLost
 from costeer.devices.wheels.registry import emergency_stop, found_wheels, open_wheel
 from costeer.devices.wheels.senso import SensoWheel, senso_description, stop_senso
 from costeer.devices.wheels.senso_frames import SensoState
+from tests.waiting import PATIENCE, wait_for
 
 CALIBRATION = WheelCalibration(
     identity="senso-virtual-x",
@@ -26,7 +27,6 @@ CALIBRATION = WheelCalibration(
     torque_sign=-1.0,
     torque_curve=((0.0, 0.0), (1.0, 8.0)),
 )
-ENOUGH = 5.0
 CHANNELS = (f"costeer-{number}" for number in itertools.count())
 
 
@@ -94,7 +94,7 @@ def device(channel: str) -> Iterator[FakeSenso]:
     thread.start()
     yield thread
     thread.ended = True
-    thread.join(ENOUGH)
+    thread.join(PATIENCE)
     thread.bus.shutdown()
 
 
@@ -103,28 +103,20 @@ def wheel(device: FakeSenso, channel: str) -> Iterator[SensoWheel]:
     """The wheel, switched on."""
     bus = can.Bus(interface="virtual", channel=channel)
     # On a loaded machine the device's thread may not answer for a while.
-    opened = SensoWheel(bus, CALIBRATION, silence=ENOUGH)
+    opened = SensoWheel(bus, CALIBRATION, patience=PATIENCE, silence=PATIENCE)
     yield opened
     opened.close()
 
 
 def loss(use: Callable[[], object]) -> str:
     """Do something until the wheel is lost; return what is said."""
-    last = time.perf_counter() + ENOUGH
+    last = time.perf_counter() + PATIENCE
     while time.perf_counter() < last:
         try:
             use()
         except WheelLost as error:
             return str(error)
     return "not lost"
-
-
-def until(met: Callable[[], bool]) -> None:
-    """Wait for the other thread."""
-    last = time.perf_counter() + ENOUGH
-    while not met():
-        assert time.perf_counter() < last
-        time.sleep(0.001)
 
 
 def test_frames_are_those_of_the_device() -> None:
@@ -163,7 +155,7 @@ def test_a_torque_is_asked_for_in_the_devices_sign(
 ) -> None:
     for torque, sent in ((1.25, -1250), (-2.0, 2000), (50.0, -8000), (math.nan, 0)):
         wheel.write(torque)
-        until(lambda sent=sent: device.torques[-1] == sent)
+        wait_for(lambda sent=sent: device.torques[-1] == sent)
 
 
 def test_motion_and_pedals_come_back_in_our_signs(
@@ -171,8 +163,8 @@ def test_motion_and_pedals_come_back_in_our_signs(
 ) -> None:
     before = time.perf_counter()
     wheel.write(1.0)
-    until(lambda: wheel.read().driver_torque == pytest.approx(1.0))
-    until(lambda: wheel.read().brake > 0.0)
+    wait_for(lambda: wheel.read().driver_torque == pytest.approx(1.0))
+    wait_for(lambda: wheel.read().brake > 0.0)
     reading = wheel.read()
     assert reading.steering_wheel_angle == pytest.approx(-math.radians(90.0))
     assert reading.steering_wheel_rate == pytest.approx(-2.0 * math.pi)
@@ -188,10 +180,10 @@ def test_every_answer_is_read_and_the_newest_counts(
     for step in range(50):
         device.increments = 100 * step
         wheel.write(0.01 * step)
-        until(lambda step=step: device.torques[-1] == -10 * step)
+        wait_for(lambda step=step: device.torques[-1] == -10 * step)
     newest = pytest.approx(-math.radians(4900 * 0.009))
     time.sleep(0.02)  # so that most answers wait
-    until(lambda: wheel.read().steering_wheel_angle == newest)
+    wait_for(lambda: wheel.read().steering_wheel_angle == newest)
     assert wheel.read().steering_wheel_angle == newest
 
 
@@ -199,20 +191,20 @@ def test_a_torque_dies_when_only_readings_go_on(
     wheel: SensoWheel, device: FakeSenso
 ) -> None:
     wheel.write(2.0)
-    until(lambda: device.torques[-1] == -2000)
+    wait_for(lambda: device.torques[-1] == -2000)
     start = time.perf_counter()
 
     def is_off() -> bool:
         wheel.read()
         return device.torques[-1] == 0
 
-    until(is_off)
+    wait_for(is_off)
     assert time.perf_counter() - start > 0.1
 
 
 def test_a_silent_wheel_is_lost(device: FakeSenso, channel: str) -> None:
     bus = can.Bus(interface="virtual", channel=channel)
-    wheel = SensoWheel(bus, CALIBRATION, silence=0.05)
+    wheel = SensoWheel(bus, CALIBRATION, patience=PATIENCE, silence=0.05)
     device.silent = True
     assert "does not answer; see its power" in loss(wheel.read)
     wheel.close()
@@ -241,7 +233,7 @@ def test_closing_sets_zero_and_switches_off(
     wheel.write(2.0)
     wheel.close()
     wheel.close()
-    until(lambda: device.state == SensoState.OFF)
+    wait_for(lambda: device.state == SensoState.OFF)
     assert device.torques[-1] == 0
     for use in (wheel.read, lambda: wheel.write(1.0)):
         with pytest.raises(WheelLost, match="is closed"):
@@ -254,7 +246,7 @@ def test_another_process_switches_it_off(
     wheel.write(2.0)
     other = can.Bus(interface="virtual", channel=channel)
     stop_senso(senso_description(f"virtual:{channel}"), other)
-    until(lambda: device.state == SensoState.OFF)
+    wait_for(lambda: device.state == SensoState.OFF)
     assert device.torques[-1] == 0
 
 
@@ -272,9 +264,9 @@ def test_the_registry_opens_and_stops_it_by_its_address(
     mine = CALIBRATION._replace(identity=description.identity)
     wheel = open_wheel(description, mine)
     wheel.write(1.0)
-    until(lambda: device.torques[-1] == -1000)
+    wait_for(lambda: device.torques[-1] == -1000)
     emergency_stop(description)
-    until(lambda: device.state == SensoState.OFF)
+    wait_for(lambda: device.state == SensoState.OFF)
     wheel.close()
 
 

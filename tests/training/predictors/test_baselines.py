@@ -69,6 +69,7 @@ def test_all_are_fitted_with_their_facts() -> None:
     assert found["support-vectors"].variants["motion"].dual.size <= 30
 
 
+@pytest.mark.slow  # three rounds of fits
 def test_the_same_seed_gives_the_same_numbers() -> None:
     # The LSTM goes down the same way as the head's network, and takes longer.
     drawn = ("support-vectors", "head-only")

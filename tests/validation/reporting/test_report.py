@@ -104,6 +104,7 @@ def test_every_figure_has_a_title_a_description_and_a_file(
     assert {"people-lane-changes", "people-glances", "people-others"} <= names
 
 
+@pytest.mark.slow  # a report of its own
 def test_the_same_evidence_gives_the_same_bytes(folder: Path, tmp_path: Path) -> None:
     written(tmp_path)
     for file in sorted(folder.rglob("*")):

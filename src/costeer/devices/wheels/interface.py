@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import NamedTuple, Protocol, runtime_checkable
+
+from costeer.devices.wheels.calibration import WheelCalibration
 
 LEFT_INDICATOR = 1
 """Bit of `WheelReading.buttons`: the left paddle is pulled."""
@@ -42,7 +45,7 @@ class WheelDescription(NamedTuple):
     """Which device; it can be sent to another process.
 
     Attributes:
-        kind: "sdl", "hid", "senso" or "simulated".
+        kind: Name of its `WheelKind`.
         address: Where the backend finds it: SDL's GUID and number, path of the HID
             device, CAN interface and channel, or the options of a simulated wheel.
         name: For people.
@@ -117,3 +120,21 @@ def pedal_position(value: float, sign: float) -> float:
 def axis_at(axes: tuple[float, ...], number: int) -> float:
     """Value of an axis in [-1, 1]; NaN if the device has no axis of this number."""
     return axes[number] if 0 <= number < len(axes) else math.nan
+
+
+class WheelKind(NamedTuple):
+    """How wheels of one kind are found, opened and stopped; a plug-in brings its own.
+
+    Attributes:
+        name: As in `WheelDescription.kind`.
+        open: Opens a device in the process and the thread that reads and writes.
+        stop: Takes the torque off from another process; whoever used it may be dead.
+        prepare: Gets ready to stop, as far as that takes a while.
+        search: Wheels that are plugged in; none is searched for if None.
+    """
+
+    name: str
+    open: Callable[[WheelDescription, WheelCalibration], Wheel]
+    stop: Callable[[WheelDescription], None]
+    prepare: Callable[[], object] = int
+    search: Callable[[], list[WheelDescription]] | None = None

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import sys
 import time
-from collections.abc import Callable
+from contextlib import suppress
+from functools import cache
 
+from costeer.base.plugins import advertised, load_object
 from costeer.devices.wheels import hid, sdl, senso, simulated
 from costeer.devices.wheels.calibration import WheelCalibration
-from costeer.devices.wheels.interface import Wheel, WheelDescription
+from costeer.devices.wheels.interface import Wheel, WheelDescription, WheelKind
 from costeer.devices.wheels.sdl_session import stay_ready
 
 _INSTALL = (
@@ -16,7 +18,68 @@ _INSTALL = (
     "pip install 'costeer[drive]'"
 )
 
-Search = Callable[[], list[WheelDescription]]
+ENTRY_POINTS = "costeer.wheels"
+"""Group of entry points under which an installed package offers a `WheelKind`."""
+
+
+def _open_hid(description: WheelDescription, calibration: WheelCalibration) -> Wheel:
+    transport = hid.DeviceTransport(description.address)
+    return hid.HidWheel(transport, hid.hid_model(description), calibration)
+
+
+def _open_senso(description: WheelDescription, calibration: WheelCalibration) -> Wheel:
+    return senso.SensoWheel(senso.open_bus(description), calibration)
+
+
+def _open_simulated(
+    description: WheelDescription, calibration: WheelCalibration
+) -> Wheel:
+    return simulated.open_simulated(description, calibration, time.perf_counter)
+
+
+OWN = (
+    WheelKind("sdl", sdl.SdlWheel, sdl.stop_sdl, stay_ready, lambda: sdl.sdl_wheels()),
+    WheelKind(
+        "hid", _open_hid, hid.stop_hid, hid.hid_library, lambda: hid.hid_wheels()
+    ),
+    WheelKind("senso", _open_senso, senso.stop_senso, senso.can_library),
+    WheelKind("simulated", _open_simulated, simulated.stop_simulated),
+)
+"""Kinds of wheels that costeer knows by itself, in the order they are searched."""
+
+
+@cache
+def wheel_kinds() -> dict[str, WheelKind]:
+    """Every kind of wheel by name, those of installed plug-ins last.
+
+    Raises:
+        ValueError: If two have one name, or a plug-in is no `WheelKind`.
+    """
+    kinds = {kind.name: kind for kind in OWN}
+    for place in advertised(ENTRY_POINTS).values():
+        kind = load_object(place, WheelKind, "WHEEL")
+        if kind.name in kinds:
+            raise ValueError(
+                f"two kinds of wheels are called '{kind.name}', one of them {place}; "
+                "give it another name"
+            )
+        kinds[kind.name] = kind
+    return kinds
+
+
+def _kind_of(description: WheelDescription) -> WheelKind:
+    """The kind of a wheel.
+
+    Raises:
+        ValueError: If it is not known.
+    """
+    kinds = wheel_kinds()
+    if description.kind not in kinds:
+        raise ValueError(
+            f"kind of the wheel is {description.kind!r}, it must be one of "
+            f"{', '.join(kinds)}"
+        )
+    return kinds[description.kind]
 
 
 def found_wheels(can: str = "", platform: str = sys.platform) -> list[WheelDescription]:
@@ -35,7 +98,7 @@ def found_wheels(can: str = "", platform: str = sys.platform) -> list[WheelDescr
     """
     if can:
         return [senso.senso_description(can)]
-    searches: list[Search] = [sdl.sdl_wheels, hid.hid_wheels]
+    searches = [each.search for each in wheel_kinds().values() if each.search]
     if platform == "darwin":
         searches.reverse()
     found: list[WheelDescription] = []
@@ -75,18 +138,7 @@ def open_wheel(description: WheelDescription, calibration: WheelCalibration) -> 
             f"the calibration is of wheel {calibration.identity}, not of "
             f"{description.name} ({description.identity}); run: costeer wheel calibrate"
         )
-    if description.kind == "sdl":
-        return sdl.SdlWheel(description, calibration)
-    if description.kind == "hid":
-        model = hid.hid_model(description)
-        return hid.HidWheel(
-            hid.DeviceTransport(description.address), model, calibration
-        )
-    if description.kind == "senso":
-        return senso.SensoWheel(senso.open_bus(description), calibration)
-    if description.kind == "simulated":
-        return simulated.open_simulated(description, calibration, time.perf_counter)
-    raise _unknown(description)
+    return _kind_of(description).open(description, calibration)
 
 
 def emergency_stop(description: WheelDescription) -> None:
@@ -99,18 +151,8 @@ def emergency_stop(description: WheelDescription) -> None:
         ModuleNotFoundError: If the package for it is not installed; says how to.
         ValueError: If the kind is unknown.
     """
-    stops = {
-        "sdl": sdl.stop_sdl,
-        "hid": hid.stop_hid,
-        "senso": senso.stop_senso,
-        "simulated": simulated.stop_simulated,
-    }
-    if description.kind not in stops:
-        raise _unknown(description)
-    try:
-        stops[description.kind](description)
-    except OSError:
-        return
+    with suppress(OSError):
+        _kind_of(description).stop(description)
 
 
 def prepare_stop(description: WheelDescription) -> None:
@@ -118,17 +160,6 @@ def prepare_stop(description: WheelDescription) -> None:
 
     Raises:
         ModuleNotFoundError: If the package for it is not installed; says how to.
+        ValueError: If the kind is unknown.
     """
-    if description.kind == "sdl":
-        stay_ready()
-    elif description.kind == "hid":
-        hid.hid_library()
-    elif description.kind == "senso":
-        senso.can_library()
-
-
-def _unknown(description: WheelDescription) -> ValueError:
-    return ValueError(
-        f"kind of the wheel is {description.kind!r}, it must be one of sdl, hid, senso "
-        "and simulated"
-    )
+    _kind_of(description).prepare()

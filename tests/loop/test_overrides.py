@@ -1,0 +1,196 @@
+"""Parameters by name: each reaches the loop, and the stage that it is of."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import pytest
+
+from costeer.base.array import Real
+from costeer.base.packing import leaf_names, packed
+from costeer.controller import (
+    actuation,
+    consistency,
+    guidance,
+    inference,
+    preview,
+    replanning,
+    strength,
+    trajectory,
+)
+from costeer.controller import step as controller
+from costeer.controller.signals import Request
+from costeer.controller.step import ControllerParameters
+from costeer.loop.overrides import OPTIONS, parameter_list
+from costeer.loop.parameters import LoopParameters
+from costeer.loop.scenario import TrialSetup, loop_parameters
+from costeer.loop.trial import simulate_trial
+from tests.controller.samples import DT, LEFT_LANE, sample
+
+SETUP = TrialSetup(condition="strong-normal", intention="off", length=100.0)
+USUAL = loop_parameters(SETUP)
+COPIED = ("car.", "column.", "road.")
+"""What the controller knows of the world."""
+
+
+def leaves(parameters: LoopParameters[Any]) -> dict[str, float]:
+    return dict(zip(leaf_names(parameters), packed(parameters).tolist(), strict=True))
+
+
+def others() -> dict[str, float]:
+    """For each name another value that it may have."""
+    found = {}
+    for each in parameter_list(USUAL):
+        low, high = each.allowed
+        shares = (1.0, 0.0) if isinstance(each.value, bool) else (0.25, 0.5)
+        values = [low + share * (high - low) for share in shares]
+        found[each.name] = next(v for v in values if v != each.value)
+    return found
+
+
+OTHERS = others()
+
+
+def test_every_number_of_a_trial_can_be_set_or_is_an_option() -> None:
+    assert set(leaves(USUAL)) == OTHERS.keys() | OPTIONS.keys()
+
+
+@pytest.mark.parametrize("name", OTHERS)
+def test_a_parameter_changes_in_the_loop_and_nothing_else_does(name: str) -> None:
+    value = OTHERS[name]
+    found = leaves(loop_parameters(SETUP._replace(parameters=((name, value),))))
+    changed = {leaf for leaf, was in leaves(USUAL).items() if found[leaf] != was}
+    expected = {name}
+    if name.startswith(COPIED):
+        expected |= {f"controller.{name}"}
+    if name == "car.aligning_stiffness":
+        expected |= {"controller.guidance.slip_angle_gain"}  # a share of it
+    assert changed == expected
+    assert {
+        found[leaf] for leaf in (name, f"controller.{name}") if leaf in changed
+    } == {value}
+
+
+def test_a_method_may_be_wrong_about_its_car() -> None:
+    ones = (("car.mass", 2000.0), ("controller.car.mass", 1000.0))
+    parameters = loop_parameters(SETUP._replace(parameters=ones))
+    assert parameters.car.mass == 2000.0
+    assert parameters.controller.car.mass == 1000.0
+
+
+def test_a_parameter_of_the_method_needs_no_prefix() -> None:
+    short, full = (
+        loop_parameters(SETUP._replace(parameters=((name, 3.0),)))
+        for name in (
+            "guidance.lateral_error_gain",
+            "controller.guidance.lateral_error_gain",
+        )
+    )
+    assert short == full
+    assert short.controller.guidance.lateral_error_gain == 3.0
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "told"),
+    [
+        ("guidance.lateral_error_gian", 3.0, "mean guidance.lateral_error_gain"),
+        ("lateral_error_gain", 3.0, r"mean guidance.lateral_error_gain\?"),
+        ("hold_time", 0.2, r"mean consistency.hold_time\?"),
+        ("tyres", 1.0, "there is no parameter 'tyres'"),
+        ("consistency.hold_time", -1.0, "is -1; give a number from 0 to 100 s"),
+        ("consistency.inconsistency_threshold", float("inf"), "is inf; .* to 100 W"),
+        ("car.mass", 0.0, r"car\.mass is 0; give a number from 15 to 150000 kg"),
+        ("car.mass", float("nan"), "car.mass is nan; give a number"),
+        ("preview.look_ahead", 0.5, "is 0.5; give a number from 0 or 1"),
+        ("actuation.strength_factor", 0.5, "is decided by condition; set that one"),
+        ("road.length", 500.0, "is decided by length; set that one instead"),
+    ],
+)
+def test_a_wrong_name_or_value_is_refused_with_the_way_out(
+    name: str, value: float, told: str
+) -> None:
+    with pytest.raises(ValueError, match=told):
+        loop_parameters(SETUP._replace(parameters=((name, value),)))
+
+
+Given = dict[str, tuple[Any, ...]]
+
+
+@pytest.fixture
+def given(monkeypatch: pytest.MonkeyPatch) -> Given:
+    """What each stage of the controller was called with last."""
+    heard: Given = {}
+    stages: dict[Any, str] = {
+        inference: "step",
+        trajectory: "step",
+        preview: "preview",
+        guidance: "guide",
+        consistency: "step",
+        strength: "step",
+        replanning: "replan",
+        actuation: "step",
+    }
+
+    def listening(name: str, stage: Callable[..., Any]) -> Callable[..., Any]:
+        def listen(*arguments: Any) -> Any:
+            heard[name] = arguments
+            return stage(*arguments)
+
+        return listen
+
+    for module, name in stages.items():
+        short = module.__name__.rpartition(".")[2]
+        wrapped = listening(short, getattr(module, name))
+        monkeypatch.setattr(module, name, wrapped)
+    return heard
+
+
+def test_every_parameter_of_the_method_reaches_its_stage(given: Given) -> None:
+    own = {n: v for n, v in OTHERS.items() if n.startswith("controller.")}
+    setup = SETUP._replace(parameters=tuple(own.items()), length=100.0)
+    simulate_trial(setup, engine="python")
+    arrived = dict(
+        zip(
+            ControllerParameters._fields,
+            (
+                given["preview"][1],
+                given["guidance"][2],
+                given["inference"][2],
+                given["inference"][0],
+                given["trajectory"][0],
+                given["preview"][0],
+                given["guidance"][0],
+                given["consistency"][0],
+                given["strength"][0],
+                given["replanning"][0],
+                given["actuation"][0],
+            ),
+            strict=True,
+        )
+    )
+    assert given["trajectory"][2] == arrived["road"]
+    assert given["guidance"][1] == arrived["car"]
+    made = leaves(LoopParameters(ControllerParameters(**arrived)))
+    assert {name: made[name] for name in own} == own
+
+
+class LongerTrajectory(NamedTuple):
+    """`TrajectoryParameters` of a later version, with one more."""
+
+    change_duration: Real = 6.0
+    smoothness: Real = 0.3
+
+
+@pytest.mark.parametrize("asked", [float("nan"), 3.0])
+def test_a_duration_that_is_asked_for_replaces_nothing_else(
+    asked: float, given: Given
+) -> None:
+    later: Any = LongerTrajectory()
+    parameters = ControllerParameters(trajectory=later)
+    state = controller.initial_state(parameters, LEFT_LANE)
+    request = Request(requested=True, change_duration=asked)
+    controller.step(parameters, state, sample(), request, DT)
+    expected = 3.0 if asked == 3.0 else 6.0
+    assert given["trajectory"][0] == LongerTrajectory(change_duration=expected)
+    assert isinstance(given["trajectory"][0], LongerTrajectory)

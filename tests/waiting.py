@@ -1,0 +1,17 @@
+"""Waiting for what another thread or process does, on a machine that may be busy."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+
+PATIENCE = 60.0
+"""After which what takes milliseconds will never happen, on any machine [s]."""
+
+
+def wait_for(fact: Callable[[], object]) -> None:
+    """Wait until something is so."""
+    deadline = time.monotonic() + PATIENCE
+    while not fact():
+        assert time.monotonic() < deadline, "it did not come to pass"
+        time.sleep(0.005)
