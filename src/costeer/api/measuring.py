@@ -57,8 +57,8 @@ def measures(
     for name in thresholds:
         if name not in known:
             raise ValueError(
-                f"measures has no threshold '{name}'{nearest(name, known)} known are "
-                f"{', '.join(known)}"
+                f"there is no threshold '{name}'{nearest(name, known) or ';'} choose "
+                f"from {', '.join(known)}"
             )
     chosen = MeasureParameters(lane_width=lane_width, **thresholds)
     parts = analyse(as_record(recording), parameters=chosen)

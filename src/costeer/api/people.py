@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from costeer.api.recordings import File, Recorded, as_record
+from costeer.api.recordings import File, Recorded, as_record, by_name
 from costeer.api.trials import SUGGESTED_SPEED
 from costeer.drivers.driver import DriverParameters
 from costeer.drivers.population import participant_driver
@@ -72,7 +72,7 @@ def fit_driver(recording: Recorded, car: str | None = None) -> DriverFit:
 
 
 def evaluate(
-    predictor: str | Predictor | Judge,
+    predictor: File | Predictor | Judge,
     recordings: Recorded | File | Sequence[Recorded | File],
     *,
     weights: File | None = None,
@@ -130,7 +130,7 @@ def evaluate(
 
 
 def _probabilities(
-    wanted: str | Predictor | Judge, weights: File | None
+    wanted: File | Predictor | Judge, weights: File | None
 ) -> Probabilities:
     """A predictor of stretches; a function of windows is asked at each sample."""
     path = None if weights is None else os.fspath(weights)
@@ -138,7 +138,7 @@ def _probabilities(
         return wanted.probabilities
     if wanted in PREDICTORS and not (path or "").endswith(".onnx"):
         return shipped(str(wanted), None if path is None else Path(path)).probabilities
-    chosen = chosen_predictor(wanted, path)
+    chosen = chosen_predictor(by_name(wanted), path)
     judge = chosen.judge
     assert judge is not None  # only "gru" runs compiled, and it is shipped
 

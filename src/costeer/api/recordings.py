@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import os
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar
 
 import numpy as np
 
@@ -16,8 +16,14 @@ if TYPE_CHECKING:
     from pandas import DataFrame
 
 File: TypeAlias = str | os.PathLike[str]
+Part = TypeVar("Part")
 # Any: what a mapping or a data frame holds differs from column to column.
 Recorded: TypeAlias = "TrialRecord | Mapping[str, Any] | DataFrame"
+
+
+def by_name(wanted: Part | os.PathLike[str]) -> Part | str:
+    """What is plugged in; a path as the text that names it."""
+    return os.fspath(wanted) if isinstance(wanted, os.PathLike) else wanted
 
 
 def load_record(path: File) -> TrialRecord:

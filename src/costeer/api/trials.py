@@ -11,14 +11,14 @@ from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from costeer.api.recordings import File
+from costeer.api.recordings import File, by_name
 from costeer.drivers.driver import DriverParameters
 from costeer.intention.predictors.chosen import Judge
 from costeer.intention.predictors.interface import Predictor
 from costeer.intention.predictors.registry import OURS
 from costeer.loop.inputs import car_of, read_driver
 from costeer.loop.overrides import METHOD, parameter_list
-from costeer.loop.scenario import DRIVERS, TrialSetup, loop_parameters
+from costeer.loop.scenario import TrialSetup, loop_parameters
 from costeer.loop.tick import PREDICTION_HORIZON
 from costeer.loop.trial import simulate_trial
 from costeer.methods.conditions import CONDITION_NAMES, parse_conditions
@@ -42,12 +42,12 @@ def simulate(
     seed: int = 1,
     participant: int = 1,
     intention: str = "network",
-    method: str | AnyMethod = "ibhs",
-    driver: str | DriverParameters = "virtual",
+    method: File | AnyMethod = "ibhs",
+    driver: File | DriverParameters = "virtual",
     parameters: Mapping[str, float] | None = None,
-    predictor: str | Predictor | Judge = OURS,
+    predictor: File | Predictor | Judge = OURS,
     weights: File | None = None,
-    car: str | CarParameters = "default",
+    car: File | CarParameters = "default",
     speed: float = SUGGESTED_SPEED,
     strength_factor: float = math.nan,
     change_duration: float = math.nan,
@@ -107,7 +107,9 @@ def simulate(
     given = locals()
     given |= {
         "driver": _driver(driver),
-        "car": car_of(car) if isinstance(car, str) else car,
+        "car": _car(car),
+        "method": by_name(method),
+        "predictor": by_name(predictor),
         "weights": None if weights is None else os.fspath(weights),
         "parameters": tuple((parameters or {}).items()),
         "trigger_times": tuple(trigger_times),
@@ -117,15 +119,17 @@ def simulate(
     )
 
 
-def _driver(driver: str | DriverParameters) -> str | DriverParameters:
-    """A driver by its file, if it is one."""
-    if (
-        isinstance(driver, str)
-        and driver not in DRIVERS
-        and driver.endswith((".yaml", ".yml"))
-    ):
-        return read_driver(Path(driver))
-    return driver
+def _driver(driver: File | DriverParameters) -> str | DriverParameters:
+    """A driver, or who is of that name or in that file."""
+    if isinstance(driver, DriverParameters):
+        return driver
+    name = os.fspath(driver)
+    return read_driver(Path(name)) if name.endswith((".yaml", ".yml")) else name
+
+
+def _car(car: File | CarParameters) -> str | CarParameters:
+    """A car, or the one of that name or in that file."""
+    return car if isinstance(car, CarParameters) else car_of(os.fspath(car))
 
 
 def study(
@@ -134,12 +138,12 @@ def study(
     participants: int = 12,
     conditions: str | Iterable[str] = CONDITION_NAMES,
     seed: int = 1,
-    method: str | AnyMethod = "ibhs",
+    method: File | AnyMethod = "ibhs",
     intention: str = "network",
     length: float = 8000.0,
     speed: float = SUGGESTED_SPEED,
-    car: str = "default",
-    predictor: str = OURS,
+    car: File = "default",
+    predictor: File = OURS,
     weights: File | None = None,
     drivers: Sequence[File] = (),
     parameters: Mapping[str, float] | None = None,
@@ -187,6 +191,9 @@ def study(
     names = conditions.split(",") if isinstance(conditions, str) else conditions
     given |= {
         "conditions": parse_conditions(",".join(names)),
+        "method": by_name(method),
+        "car": os.fspath(car),
+        "predictor": os.fspath(predictor),
         "weights": "" if weights is None else os.fspath(weights),
         "drivers": tuple(os.fspath(file) for file in drivers),
         "parameters": tuple((parameters or {}).items()),
@@ -197,9 +204,9 @@ def study(
 
 
 def parameters(
-    method: str | AnyMethod = "ibhs",
+    method: File | AnyMethod = "ibhs",
     condition: str = "strong-normal",
-    car: str | CarParameters = "default",
+    car: File | CarParameters = "default",
 ) -> DataFrame:
     """Every number that `parameters=` of `simulate` and `study` can set.
 
@@ -224,8 +231,8 @@ def parameters(
 
     setup = TrialSetup(
         condition=condition,
-        method=method,
-        car=car_of(car) if isinstance(car, str) else car,
+        method=by_name(method),
+        car=_car(car),
     )
     rows = {
         each.name.removeprefix(METHOD): {
