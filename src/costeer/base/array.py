@@ -42,6 +42,14 @@ def compiled(function: Function) -> Function:
 
     The function itself stays plain Python, so the Python and JAX engines run it as
     it is written; Numba compiles it into whatever calls it.
+
+    Example:
+        >>> import costeer
+        >>> @costeer.compiled
+        ... def spring(stiffness, angle):
+        ...     return -stiffness * angle
+        >>> spring(2.0, 0.5)
+        -1.0
     """
     return register_jitable(**_INNER)(function)
 

@@ -51,10 +51,9 @@ def parameters(
     if not shown:
         from costeer.base.described import nearest
 
-        names = [each.name for each in listed]
         raise ValueError(
             f"no parameter has {' and '.join(words or ())} in its name"
-            f"{nearest(' '.join(words or ()), names)}"
+            f"{nearest(' '.join(words or ()), [each.name for each in listed])}"
         )
     if json:
         _print_json(shown)

@@ -58,6 +58,12 @@ class DriverParameters(NamedTuple):
         decision: When to change lanes [SI units]. Source: drivers/decision.py.
         gaze: Glances [SI units]. Source: drivers/gaze.py.
         longitudinal: Speed [SI units]. Source: drivers/longitudinal.py.
+
+    Example:
+        >>> import costeer
+        >>> driver = costeer.Driver()
+        >>> stiff = driver._replace(arm=driver.arm._replace(stiffness=20.0))
+        >>> record = costeer.simulate("manual", length=200, driver=stiff)
     """
 
     vision: VisionParameters = VisionParameters()

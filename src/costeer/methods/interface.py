@@ -76,6 +76,36 @@ class Method(NamedTuple, Generic[P, S]):
         columns: What it adds to a record: names that begin with `method_`, sources in
             its state, as `method.integral`.
         tunables: What an experimenter may move during a drive.
+
+    Example:
+        >>> from typing import NamedTuple
+        >>> import costeer
+        >>> from costeer.controller.signals import NO_ASSISTANCE
+        >>> class Damping(NamedTuple):
+        ...     gain: float = 0.5
+        >>> class Memory(NamedTuple):
+        ...     steps: float = 0.0
+        >>> @costeer.compiled
+        ... def initial_state(parameters, lane):
+        ...     return Memory()
+        >>> @costeer.compiled
+        ... def step(parameters, state, measurement, request, dt):
+        ...     torque = -parameters.gain * measurement.steering_wheel_rate
+        ...     steps = Memory(steps=state.steps + 1.0)
+        ...     return steps, NO_ASSISTANCE._replace(applied_torque=torque)
+        >>> damping = costeer.Method(
+        ...     name="damping",
+        ...     version="1",
+        ...     source="an example",
+        ...     parameters=lambda condition, car, column, road: Damping(),
+        ...     initial_state=initial_state,
+        ...     step=step,
+        ... )
+        >>> damping
+        <costeer method damping 1>
+        >>> quick = {"length": 100, "intention": "off", "engine": "python"}
+        >>> costeer.simulate("strong-rapid", method=damping, **quick).metadata["method"]
+        'damping'
     """
 
     name: str

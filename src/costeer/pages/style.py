@@ -21,6 +21,7 @@ FULL_WIDTH_MM = 180.0
 """Widths of one and of two columns of a journal page [mm]."""
 
 MM_PER_INCH = 25.4
+_SCREEN_DPI = 120.0
 SMALL, NORMAL = 6.5, 7.5
 """Sizes of type [pt]."""
 
@@ -98,10 +99,19 @@ def styled() -> Iterator[None]:
         yield
 
 
+class ShownFigure(Figure):
+    """A figure that a notebook shows, also if nobody has imported pyplot."""
+
+    def _repr_png_(self) -> bytes:
+        picture = io.BytesIO()
+        self.savefig(picture, format="png", dpi=_SCREEN_DPI)
+        return picture.getvalue()
+
+
 def new_figure(width_mm: float, height_mm: float) -> Figure:
     """Return an empty figure of that size on a white ground."""
     size = (width_mm / MM_PER_INCH, height_mm / MM_PER_INCH)
-    figure = Figure(figsize=size, facecolor="white")
+    figure = ShownFigure(figsize=size, facecolor="white")
     FigureCanvasSVG(figure)
     return figure
 

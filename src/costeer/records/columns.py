@@ -9,9 +9,15 @@ from the right, an error is car minus target.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any, Literal, NamedTuple, TypeAlias, get_args
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple, TypeAlias, get_args
 
 from numpy.typing import NDArray
+
+from costeer.records import shown
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+    from pandas import DataFrame
 
 Kind: TypeAlias = Literal["float64", "int8", "bool", "string"]
 
@@ -48,6 +54,18 @@ class Column(NamedTuple):
         labels: Of texts, the word for each number of the sample.
         before: What it was in files written before it was declared; None if every
             file has it.
+
+    Example:
+        >>> import costeer
+        >>> column = costeer.Column(
+        ...     name="method_integral",
+        ...     unit="m·s",
+        ...     kind="float64",
+        ...     description="lateral error over time",
+        ...     source="method.integral",
+        ... )
+        >>> column.nullable
+        False
     """
 
     name: str
@@ -64,19 +82,55 @@ class Column(NamedTuple):
 
 
 class TrialRecord(NamedTuple):
-    """One trial, 60 rows a second.
+    """One trial, 60 rows a second; `costeer.Record` is its short name.
 
     Attributes:
         metadata: The fields of records/metadata.py.
         columns: The arrays of `COLUMNS` by name, shape `(time,)` each, and those of
             `method_columns`.
         method_columns: What the method adds to the columns of every record.
+
+    Example:
+        >>> import costeer
+        >>> record = costeer.simulate("weak-gentle", length=300, intention="off")
+        >>> record
+        <costeer record: participant 1, weak-gentle, ibhs, virtual, 912 rows, 15.2 s>
+        >>> record.to_frame().attrs["units"]["driver_torque"]
+        'N·m'
+        >>> figure = record.plot(["lateral_position", "driver_torque"])
     """
 
     metadata: dict[str, object]
     # Any: the element type differs from column to column.
     columns: dict[str, NDArray[Any]]
     method_columns: tuple[Column, ...] = ()
+
+    def __repr__(self) -> str:
+        return shown.line(self.metadata, self.columns)
+
+    def _repr_html_(self) -> str:
+        return shown.table(self.metadata, self.columns)
+
+    @property
+    def units(self) -> dict[str, str]:
+        """Unit of each column that costeer or the method declares, "-" for none."""
+        declared = {c.name: c.unit for c in (*COLUMNS, *self.method_columns)}
+        return {name: declared[name] for name in self.columns if name in declared}
+
+    def to_frame(self) -> DataFrame:
+        """The columns as a data frame, its units in `.attrs["units"]`."""
+        return shown.frame(self.metadata, self.columns, self.units)
+
+    def plot(self, signals: Sequence[str] | None = None) -> Figure:
+        """Signals against time in stacked panels, ready for print.
+
+        Args:
+            signals: Names of columns; a usual choice if None.
+
+        Raises:
+            ValueError: If the record has no such signal.
+        """
+        return shown.figure(self.metadata, self.columns, self.units, signals)
 
 
 def _number(

@@ -9,10 +9,10 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Mapping
 from functools import cache
+from importlib.metadata import version
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from costeer import __version__
 from costeer.base.described import described
 from costeer.base.entry import COMPILED_ROOMS
 from costeer.controller.step import ControllerParameters
@@ -169,7 +169,7 @@ def study_configuration(settings: StudySettings) -> dict[str, object]:
         "parameters": dict(settings.parameters),
     }
     return {
-        "costeer_version": __version__,
+        "costeer_version": version("costeer"),
         "simulation_source": simulation_source(),
         **given,
         **_plugged_in(settings, method),

@@ -28,6 +28,17 @@ class Predictor(NamedTuple):
         probabilities: Verdict at every sample of a stretch: NaN until 180 valid samples
             in a row are there (`features.valid_samples`), and while it lacks what it
             needs.
+
+    Example:
+        >>> import costeer, numpy as np
+        >>> def turned(features, absent):
+        ...     said = np.clip(5.0 * features[:, 0], 0.0, 1.0)
+        ...     said[:179] = np.nan
+        ...     return said
+        >>> head = costeer.Predictor("turned", "Turned head", "", ("head_yaw",), turned)
+        >>> record = costeer.simulate("weak-gentle", length=200, predictor=head)
+        >>> record.metadata["predictor"]
+        'turned'
     """
 
     name: str

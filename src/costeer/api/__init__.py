@@ -1,0 +1,1 @@
+"""The functions that `import costeer` offers; docs/python.md shows them."""

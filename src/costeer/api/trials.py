@@ -1,0 +1,248 @@
+"""Trials, studies and records, with the options of the commands of these names.
+
+Objects, names and files do alike where something is plugged in.
+"""
+
+from __future__ import annotations
+
+import math
+import os
+from collections.abc import Iterable, Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from costeer.api.recordings import File, by_name
+from costeer.drivers.driver import DriverParameters
+from costeer.intention.predictors.chosen import Judge
+from costeer.intention.predictors.interface import Predictor
+from costeer.intention.predictors.registry import OURS
+from costeer.loop.inputs import car_of, read_driver
+from costeer.loop.overrides import METHOD, parameter_list
+from costeer.loop.scenario import TrialSetup, loop_parameters
+from costeer.loop.tick import PREDICTION_HORIZON
+from costeer.loop.trial import simulate_trial
+from costeer.methods.conditions import CONDITION_NAMES, parse_conditions
+from costeer.methods.registry import AnyMethod
+from costeer.plant.parameters import CarParameters
+from costeer.records.columns import TrialRecord
+from costeer.study.configuration import StudySettings
+from costeer.study.run import StudyOutcome, full_report, run_study
+
+if TYPE_CHECKING:
+    from pandas import DataFrame
+
+SUGGESTED_SPEED = 70.0 / 3.6
+"""About 70 km/h, Sec. III-B [m/s]."""
+
+
+def simulate(
+    condition: str = "strong-normal",
+    *,
+    length: float = 8000.0,
+    seed: int = 1,
+    participant: int = 1,
+    intention: str = "network",
+    method: File | AnyMethod = "ibhs",
+    driver: File | DriverParameters = "virtual",
+    parameters: Mapping[str, float] | None = None,
+    predictor: File | Predictor | Judge = OURS,
+    weights: File | None = None,
+    car: File | CarParameters = "default",
+    speed: float = SUGGESTED_SPEED,
+    strength_factor: float = math.nan,
+    change_duration: float = math.nan,
+    trigger_times: Iterable[float] = (),
+    events: bool = True,
+    initial_offset: float = 0.0,
+    plant_steps: int = 8,
+    prediction_horizon: float = PREDICTION_HORIZON,
+    follows_plan: bool = False,
+    abandoned_share: float = 0.0,
+    wander_factor: float = 1.0,
+    engine: str = "numba",
+) -> TrialRecord:
+    """Simulate one trial.
+
+    Args:
+        condition: Of Table IV, as "weak-gentle" or "manual"; another name needs a
+            `strength_factor`.
+        length: Of the course [m].
+        seed: Of the population and of all noise.
+        participant: Number of the driver in the population.
+        intention: "network", "scripted" (the driver's own plan) or "off".
+        method: A method, its name, "module:object" or "file.py".
+        driver: "virtual", "hands-off", a driver, or the file of one, "NAME.yaml".
+        parameters: Dotted names and numbers; `costeer.parameters()` lists them.
+        predictor: Of crossings: its name or place, a `Predictor`, or a function from
+            the last window, shape `(180, 6)`, to a probability.
+        weights: File of the predictor's numbers, .npz or .onnx.
+        car: "default", "compact", "large", parameters, or the file of one.
+        speed: That the trial starts with and the driver prefers [m/s].
+        strength_factor: On K_h of a condition of your own [-].
+        change_duration: Of the system's lane changes in such a condition [s].
+        trigger_times: When the system starts a lane change by itself [s].
+        events: Whether leaders appear.
+        initial_offset: From the lane's centre at the start [m].
+        plant_steps: Plant steps in a control step.
+        prediction_horizon: Of the scripted intention [s].
+        follows_plan: The system changes lanes just as this driver plans to.
+        abandoned_share: Share of lane changes that the driver gives up [-].
+        wander_factor: On the driver's wander in the lane [-].
+        engine: "numba", "python" (slow, and can be debugged) or "jax".
+
+    Returns:
+        The record; the same arguments give the same bytes.
+
+    Raises:
+        ValueError: If a value cannot be, saying which, what can, and what may be meant.
+        OSError: If a file cannot be read.
+
+    Example:
+        >>> import costeer
+        >>> firm = {"guidance.lateral_error_gain": 3.0}
+        >>> record = costeer.simulate("strong-rapid", length=300, parameters=firm)
+        >>> record.columns["applied_torque"].shape == record.columns["time"].shape
+        True
+    """
+    given = locals()
+    given |= {
+        "driver": _driver(driver),
+        "car": _car(car),
+        "method": by_name(method),
+        "predictor": by_name(predictor),
+        "weights": None if weights is None else os.fspath(weights),
+        "parameters": tuple((parameters or {}).items()),
+        "trigger_times": tuple(trigger_times),
+    }
+    return simulate_trial(
+        TrialSetup(**{n: given[n] for n in TrialSetup._fields}), engine
+    )
+
+
+def _driver(driver: File | DriverParameters) -> str | DriverParameters:
+    """A driver, or who is of that name or in that file."""
+    if isinstance(driver, DriverParameters):
+        return driver
+    name = os.fspath(driver)
+    return read_driver(Path(name)) if name.endswith((".yaml", ".yml")) else name
+
+
+def _car(car: File | CarParameters) -> str | CarParameters:
+    """A car, or the one of that name or in that file."""
+    return car if isinstance(car, CarParameters) else car_of(os.fspath(car))
+
+
+def study(
+    out: File,
+    *,
+    participants: int = 12,
+    conditions: str | Iterable[str] = CONDITION_NAMES,
+    seed: int = 1,
+    method: File | AnyMethod = "ibhs",
+    intention: str = "network",
+    length: float = 8000.0,
+    speed: float = SUGGESTED_SPEED,
+    car: File = "default",
+    predictor: File = OURS,
+    weights: File | None = None,
+    drivers: Sequence[File] = (),
+    parameters: Mapping[str, float] | None = None,
+    jobs: int | None = None,
+    report: bool = True,
+) -> StudyOutcome:
+    """Run the experiment in a folder, or finish one that was begun there.
+
+    Args:
+        out: Folder; docs/study.md says what it will hold.
+        participants: How many virtual drivers.
+        conditions: Names of conditions, "all", or several in a text with commas.
+        seed: Of drivers, leaders and noise.
+        method: Guidance of the assisted trials: a method, its name or place.
+        intention: "network", or "scripted": the driver's decision is known.
+        length: Of the course [m].
+        speed: Suggested to the drivers [m/s].
+        car: Name of the car, or the file of one.
+        predictor: What reads the intention: its name or place.
+        weights: File of its numbers, .npz or .onnx.
+        drivers: Files of drivers who take turns; none: the population.
+        parameters: Dotted names and numbers; `costeer.parameters()` lists them.
+        jobs: Trials at the same time; as many as processors if None. The results do
+            not depend on it.
+        report: Tests, figures and `report.html` after the tables.
+
+    Raises:
+        ValueError: If a setting cannot be, or the folder is another study's.
+        OSError: If a file cannot be read or written; finished trials are kept.
+
+    Example:
+        >>> import costeer, tempfile
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     done = costeer.study(
+        ...         folder + "/pilot",
+        ...         participants=1,
+        ...         conditions=["manual", "weak-gentle"],
+        ...         length=500,
+        ...         report=False,
+        ...     )
+        >>> done.num_trials
+        2
+    """
+    given = locals()
+    names = conditions.split(",") if isinstance(conditions, str) else conditions
+    given |= {
+        "conditions": parse_conditions(",".join(names)),
+        "method": by_name(method),
+        "car": os.fspath(car),
+        "predictor": os.fspath(predictor),
+        "weights": "" if weights is None else os.fspath(weights),
+        "drivers": tuple(os.fspath(file) for file in drivers),
+        "parameters": tuple((parameters or {}).items()),
+    }
+    settings = StudySettings(**{name: given[name] for name in StudySettings._fields})
+    made = full_report if report else None
+    return run_study(os.fspath(out), settings, jobs=jobs, report=made)
+
+
+def parameters(
+    method: File | AnyMethod = "ibhs",
+    condition: str = "strong-normal",
+    car: File | CarParameters = "default",
+) -> DataFrame:
+    """Every number that `parameters=` of `simulate` and `study` can set.
+
+    Args:
+        method: A method, its name or its place.
+        condition: Of Table IV.
+        car: Name of the car, its parameters, or the file of one.
+
+    Returns:
+        A row for each, by name: value, unit, low, high, what it is and its source.
+
+    Raises:
+        ValueError: If method, condition or car are not known.
+
+    Example:
+        >>> import costeer
+        >>> row = costeer.parameters().loc["guidance.lateral_error_gain"]
+        >>> row.unit
+        'N·m/m'
+    """
+    import pandas as pd
+
+    setup = TrialSetup(
+        condition=condition,
+        method=by_name(method),
+        car=_car(car),
+    )
+    rows = {
+        each.name.removeprefix(METHOD): {
+            "value": float(each.value),
+            "unit": each.unit,
+            "low": each.allowed.low,
+            "high": each.allowed.high,
+            "meaning": each.meaning,
+            "source": each.source,
+        }
+        for each in parameter_list(loop_parameters(setup))
+    }
+    return pd.DataFrame.from_dict(rows, orient="index").rename_axis("name")
