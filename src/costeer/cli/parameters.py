@@ -47,14 +47,7 @@ def parameters(
         each._replace(name=each.name.removeprefix(METHOD))
         for each in parameter_list(loop_parameters(setup))
     ]
-    shown = [each for each in listed if all(word in each.name for word in words or ())]
-    if not shown:
-        from costeer.base.described import nearest
-
-        raise ValueError(
-            f"no parameter has {' and '.join(words or ())} in its name"
-            f"{nearest(' '.join(words or ()), [each.name for each in listed])}"
-        )
+    shown = _named(listed, words or [])
     if json:
         _print_json(shown)
         return
@@ -73,6 +66,23 @@ def parameters(
             for each in shown
         ],
     )
+
+
+def _named(listed: list[Described], words: list[str]) -> list[Described]:
+    """Parameters whose names contain all words.
+
+    Raises:
+        ValueError: If there is none.
+    """
+    from costeer.base.described import nearest
+
+    shown = [each for each in listed if all(word in each.name for word in words)]
+    if not shown:
+        raise ValueError(
+            f"no parameter has {' and '.join(words)} in its name"
+            f"{nearest(' '.join(words), (each.name for each in listed))}"
+        )
+    return shown
 
 
 def _print_json(shown: list[Described]) -> None:

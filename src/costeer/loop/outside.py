@@ -125,8 +125,8 @@ def outside_rollout(
     for k in range(len(noise)):
         now = slice(k, k + 1)
         advance(asked, noise[now], rows[now], keep=False)
+        if rows[k, _PLACE] >= road.length:  # where the step before has arrived
+            return rows[:k]
         probability = verdicts.after(sample_of(rows[k], road))
         advance(asked._replace(probability=probability), noise[now], rows[now])
-        if rows[k, _PLACE] >= road.length:
-            return rows[: k + 1]
     return rows

@@ -114,6 +114,12 @@ def _checked_parameters(method: Method[Any, Any]) -> Any:
     return given
 
 
+def _short(value: Any) -> str:
+    """What a value is, in a line."""
+    text = repr(value)
+    return text if len(text) < 60 else f"{text[:50]}... ({type(value).__name__})"
+
+
 def _checked_kinds(method: Method[Any, Any], what: str, given: Any) -> dict[str, str]:
     """The kinds in a named tuple of a method.
 
@@ -122,8 +128,8 @@ def _checked_kinds(method: Method[Any, Any], what: str, given: Any) -> dict[str,
     """
     if not hasattr(given, "_fields"):
         raise ValueError(
-            f"{what} of method '{method.name}' are {given!r}; give a named tuple of "
-            "numbers, flags and arrays of floats"
+            f"{what} of method '{method.name}' are {_short(given)}; give a named "
+            "tuple of numbers, flags and arrays of floats"
         )
     try:
         return kinds_of(given)
@@ -194,7 +200,9 @@ def _check_step(method: Method[Any, Any], parameters: Any) -> None:
     )
     name = f"step of method '{method.name}'"
     if not (isinstance(answer, tuple) and len(answer) == 2):
-        raise ValueError(f"{name} gives {answer!r}; give the new state and assistance")
+        raise ValueError(
+            f"{name} gives {_short(answer)}; give the new state and assistance"
+        )
     after = _checked_kinds(method, "states", answer[0])
     for place in {**before, **after}:
         if before.get(place) != after.get(place):
@@ -214,7 +222,7 @@ def _check_assistance(name: str, given: Any) -> None:
     """
     if not isinstance(given, Assistance):
         raise ValueError(
-            f"{name} gives {given!r} as its assistance; give "
+            f"{name} gives {_short(given)} as its assistance; give "
             "NO_ASSISTANCE._replace(applied_torque=torque)"
         )
     try:

@@ -354,4 +354,4 @@ def _check_compiled_step(
         begun = time.perf_counter()
         run(given, table, cruising_lane(road), torques)
         best = min(best, time.perf_counter() - begun)
-    return f"{1e6 * best / len(moments):.2f} us a control step in compiled code"
+    return f"{1e6 * best / len(moments):.2g} us a control step in compiled code"

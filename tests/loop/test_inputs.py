@@ -1,0 +1,45 @@
+"""Cars, drivers and parameters of files: what is written is what drives."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from costeer.drivers.population import participant_driver
+from costeer.loop.inputs import (
+    car_of,
+    parse_assignments,
+    read_car,
+    read_driver,
+    read_values,
+    write_driver,
+)
+from costeer.plant.parameters import LARGE_CAR, CarParameters
+
+
+def test_a_driver_is_read_as_it_was_written(tmp_path: Path) -> None:
+    driver = participant_driver(5, 3, 20.0)
+    write_driver(tmp_path / "d.yaml", driver, {"fitted_to": "trial.parquet"})
+    assert read_driver(tmp_path / "d.yaml") == driver
+    assert "fitted_to: trial.parquet" in (tmp_path / "d.yaml").read_text("utf-8")
+
+
+def test_a_car_is_the_default_one_but_for_what_its_file_names(tmp_path: Path) -> None:
+    (tmp_path / "c.yaml").write_text("about: [a, b]\nmass: 1900\n", "utf-8")
+    assert read_car(tmp_path / "c.yaml") == CarParameters(mass=1900.0)
+    assert car_of(str(tmp_path / "c.yaml")) == CarParameters(mass=1900.0)
+    assert car_of("large") == "large"
+    assert LARGE_CAR.mass == 1835.0
+
+
+def test_names_may_be_nested_or_dotted(tmp_path: Path) -> None:
+    (tmp_path / "v.yaml").write_text("a:\n  b: {c: 1}\nd.e: 2.5\n", "utf-8")
+    assert read_values(tmp_path / "v.yaml") == {"a.b.c": 1.0, "d.e": 2.5}
+    assert parse_assignments(["a.b = 3", "c=1e-3"]) == {"a.b": 3.0, "c": 0.001}
+
+
+def test_a_large_file_is_not_parsed(tmp_path: Path) -> None:
+    (tmp_path / "v.yaml").write_text("a: 1\n" * 300_000, "utf-8")
+    with pytest.raises(ValueError, match="larger than 1 MB"):
+        read_values(tmp_path / "v.yaml")

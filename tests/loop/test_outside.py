@@ -1,0 +1,68 @@
+"""A predictor outside the loop sees what the network inside sees, when it sees it."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from costeer.intention.wavefront import crossing_probabilities
+from costeer.intention.weights import load_weights
+from costeer.loop.outside import Verdicts
+from costeer.loop.scenario import TrialSetup
+from costeer.loop.tick import intention_sample
+from costeer.loop.trial import simulate_trial
+from costeer.methods.checked import standing_start
+from costeer.plant.parameters import RoadParameters
+
+SETUP = TrialSetup(condition="strong-normal", participant=2, length=400.0)
+
+Window = NDArray[np.float64]
+
+
+def imitation(window: Window) -> float:
+    """The network that ships with costeer, called from Python on one window."""
+    return float(crossing_probabilities(load_weights().weights, window)[-1])
+
+
+def test_the_network_called_from_outside_drives_the_same_trial() -> None:
+    inside = simulate_trial(SETUP)
+    outside = simulate_trial(SETUP._replace(predictor=imitation))
+    assert np.isfinite(inside.columns["crossing_probability"]).any()
+    assert list(inside.columns) == list(outside.columns)
+    for name, values in inside.columns.items():
+        if values.dtype.kind == "f":
+            found = outside.columns[name]
+            np.testing.assert_allclose(found, values, rtol=1e-9, atol=1e-9)
+    assert outside.metadata["predictor"] == "imitation"
+    assert (
+        outside.metadata["intention_model_hash"]
+        != (inside.metadata["intention_model_hash"])
+    )
+
+
+def verdict_of(answer: object) -> float:
+    """What comes of an answer to the first full window."""
+
+    def judge(window: Window) -> float:
+        assert window.shape == (180, 6)
+        return answer  # type: ignore[return-value]  # wrong answers are the point
+
+    sample = intention_sample(standing_start(RoadParameters()))
+    verdicts = Verdicts(judge, "mine")
+    assert all(math.isnan(verdicts.after(sample)) for _ in range(179))
+    return verdicts.after(sample)
+
+
+def test_a_probability_and_no_verdict_are_taken() -> None:
+    assert verdict_of(0.25) == 0.25
+    assert verdict_of(np.array(1.0)) == 1.0
+    assert math.isnan(verdict_of(math.nan))
+
+
+@pytest.mark.parametrize("answer", [2.0, -0.1, math.inf, None, "much", [0.1, 0.2]])
+def test_what_is_no_probability_stops_the_trial(answer: object) -> None:
+    with pytest.raises(ValueError, match=r"predictor mine (says|broke)"):
+        verdict_of(answer)
