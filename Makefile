@@ -13,6 +13,8 @@ BASE := pyproject.toml requirements/build.in
 # Bytecode is kept, whatever the caller's habit: rewriting 5,000 asserts takes a worker
 # half a minute.
 PYTEST := PYTHONDONTWRITEBYTECODE= $(BIN)/python -m pytest
+# A file stays in one worker: what its tests share is made once.
+WORKERS_BY_FILE := -n $(WORKERS) --dist loadfile
 SEED ?= 1
 
 export UV_PYTHON_DOWNLOADS = never
@@ -33,10 +35,10 @@ study: base
 	$(BIN)/costeer study --out $(OUT)
 
 test: dev
-	$(PYTEST) -n $(WORKERS)
+	$(PYTEST) $(WORKERS_BY_FILE)
 
 test-all: dev
-	$(PYTEST) -n $(WORKERS) -m "not gpu and not browser" --shuffle $(SEED) \
+	$(PYTEST) $(WORKERS_BY_FILE) -m "not gpu and not browser" --shuffle $(SEED) \
 		--cov --cov-report= --cov-fail-under=0
 	$(PYTEST) -m browser --cov --cov-append --cov-report=term:skip-covered
 

@@ -48,6 +48,7 @@ def test_the_drivers_to_choose_by_change_lanes() -> None:
 
 
 @pytest.mark.usefixtures("few_resamplings")
+@pytest.mark.slow  # trains in two folds
 def test_the_network_stands_beside_what_learned_from_people(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:

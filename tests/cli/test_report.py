@@ -65,6 +65,7 @@ def test_half_written_and_missing_records_are_named_and_not_believed(
     assert "not complete: 1 of 3 trials are there" in page
 
 
+@pytest.mark.slow  # a report of its own
 def test_answers_of_people_are_kept(whole: Path, tmp_path: Path) -> None:
     folder = tmp_path / "people"
     shutil.copytree(whole, folder)

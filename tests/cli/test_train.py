@@ -46,6 +46,7 @@ def test_training_leaves_a_network_with_its_facts(weights: Path) -> None:
     assert [file.name for file in weights.parent.iterdir()] == [weights.name]
 
 
+@pytest.mark.slow  # a training of its own
 def test_the_same_command_gives_the_same_bytes(weights: Path, tmp_path: Path) -> None:
     source = table(tmp_path / "drives.csv")
     assert train(source, "--out", tmp_path / "again.npz") == 0

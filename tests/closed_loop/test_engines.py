@@ -81,7 +81,9 @@ def test_the_minute_holds_lane_changes_guidance_and_a_dispute() -> None:
 
 
 @pytest.mark.no_cover  # tracing a minute of plain Python takes half of one
-@pytest.mark.parametrize("engine", ["python", "jax"])
+@pytest.mark.parametrize(
+    "engine", ["python", pytest.param("jax", marks=pytest.mark.slow)]
+)
 def test_every_column_agrees_to_one_in_a_billion(engine: str) -> None:
     # Rounding alone parts the engines, and the loop damps it: 1e-9 leaves room for
     # another order of additions and other libraries' tanh, not for another equation.

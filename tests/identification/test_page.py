@@ -13,6 +13,7 @@ from costeer.identification.recording import NEEDED
 PAGE = (Path(__file__).parents[2] / "docs" / "fit.md").read_text("utf-8")
 
 
+@pytest.mark.slow  # fits a driver
 def test_the_example_of_the_page_runs(capsys: pytest.CaptureFixture[str]) -> None:
     (code,) = re.findall(r"^```python\n(.*?)^```", PAGE, re.M | re.S)
     exec(compile(code, "docs/fit.md", "exec"), {})

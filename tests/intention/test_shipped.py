@@ -41,6 +41,7 @@ def test_no_driver_had_two_parts() -> None:
     assert len(set.union(*parts)) == sum(map(len, parts))
 
 
+@pytest.mark.slow  # drives kilometres
 def test_it_judges_other_seeds_as_its_facts_say() -> None:
     network = load_weights()
     predict = partial(our_probabilities, network.weights)

@@ -138,6 +138,7 @@ def learned_without() -> Fit:
 
 
 @pytest.mark.parametrize("variant", VARIANTS)
+@pytest.mark.slow  # a training of its own
 def test_a_network_that_missed_signals_does_without(
     variant: str, learned_without: Fit
 ) -> None:
@@ -146,6 +147,7 @@ def test_a_network_that_missed_signals_does_without(
     assert area(learned_without.weights, VARIANTS[variant]) > 0.5
 
 
+@pytest.mark.slow  # a training of its own
 def test_the_curve_tells_of_each_variant(learned_without: Fit) -> None:
     for point in learned_without.curve:
         assert list(point.pr_auc) == list(VARIANTS)
@@ -208,6 +210,7 @@ def test_the_smallest_size_near_the_best_is_chosen() -> None:
     assert chosen_size(fits, tolerance=0.1) == 8
 
 
+@pytest.mark.slow  # a training of its own
 def test_facts_tell_where_a_network_comes_from() -> None:
     parameters = TrainingParameters(
         hidden_sizes=(2, 4), fit=TINY._replace(num_steps=4, steps_per_check=2)

@@ -51,6 +51,7 @@ def test_it_learns_from_the_recordings_and_keeps_its_scaling() -> None:
     np.testing.assert_array_equal(tuned.feature_mean, START.feature_mean)
 
 
+@pytest.mark.slow  # a training of its own
 def test_what_the_recordings_lack_stays_hidden() -> None:
     blind = [lacking(one, ("head_yaw",)) for one in drives(3, num_changes=2)]
     spoilt = [
@@ -64,6 +65,7 @@ def test_recordings_without_a_lane_change_teach_nothing() -> None:
         fine_tuned(START, drives(2, num_changes=0), 1, FEW)
 
 
+@pytest.mark.slow  # a training of its own
 def test_the_papers_network_sees_the_six_signals_only() -> None:
     split = split_by_driver(drives(5, num_changes=2), 1, DatasetParameters())
     tiny = FitParameters(batch_size=32, num_steps=4, steps_per_check=4)

@@ -219,6 +219,7 @@ def lane_position(number: int, friction: float) -> Signal:
     return rows[round(10.0 / DT) :, ROW_COLUMNS.index("lateral_position")]
 
 
+@pytest.mark.slow  # a population of its own
 def test_with_the_drivers_noise_dry_friction_hardly_adds_to_the_drift() -> None:
     # Without noise the same friction lets them hunt by a decimetre.
     assert np.median(dozen().hunting) > 0.05

@@ -57,7 +57,7 @@ _ATTRIBUTE = re.compile(
 )
 
 _POSITIVE = re.compile(
-    r"(mass|inertia|distance|stiffness|ratio|lag|width|length|time|duration|steepness)$"
+    r"(mass|inertia|distance|stiffness|ratio|lag|width|length|time|duration|steepness|smoothing)$"
 )
 """Names of what would be meaningless, or divided by, at zero."""
 

@@ -22,6 +22,7 @@ from numba.core import event
 from numba.core.caching import FunctionCache
 
 from costeer.base.notice import Compilations
+from costeer.base.packing import layout_of
 from costeer.base.plugins import is_interactive
 from costeer.base.plugins import source_hash as plugin_hash
 
@@ -120,11 +121,15 @@ class _ClosureCache(FunctionCache):
     """Numba's cache, keyed without what the closure holds: the folder's name says it.
 
     Numba's own key would pickle the functions in the closure and never be found again.
+    Only how its tuples lie packed is not said by sources: two methods may share a step.
     """
 
     def _index_key(self, sig: Any, codegen: Any) -> Any:
-        code = self._py_func.__code__
-        return sig, codegen.magic_tuple(), hashlib.sha256(code.co_code).hexdigest()
+        digest = hashlib.sha256(self._py_func.__code__.co_code)
+        for cell in self._py_func.__closure__ or ():
+            if isinstance(cell.cell_contents, tuple):
+                digest.update(str(layout_of(cell.cell_contents)).encode())
+        return sig, codegen.magic_tuple(), digest.hexdigest()
 
 
 def entry(function: Function) -> Function:

@@ -37,6 +37,17 @@ def leaf_names(value: Any, prefix: str = "") -> list[str]:
     return names
 
 
+def layout_of(value: Any) -> tuple[tuple[str, str], ...]:
+    """Return name and kind of all that a nested named tuple holds, in its order."""
+    if isinstance(value, tuple):
+        return tuple(
+            (f"{name}.{inner}", kind)
+            for name, part in zip(cast("Any", value)._fields, value, strict=True)
+            for inner, kind in layout_of(part)
+        )
+    return (("", f"{type(value).__name__}{np.shape(value)}"),)
+
+
 def packed(value: Any) -> NDArray[np.float64]:
     """Return the nested named tuple as one new float64 array."""
     array = np.empty(packed_size(value))

@@ -7,24 +7,21 @@ are pure and marked `compiled`, so that every engine runs them.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable
 from functools import cache
 from typing import Any, Generic, NamedTuple, TypeVar
 
 from costeer.base.array import Real
-from costeer.base.packing import leaf_names, packed
+from costeer.base.packing import layout_of
 from costeer.base.plugins import source_hash
 from costeer.controller.signals import Assistance, Request
 from costeer.methods.conditions import CONDITIONS, Condition
 from costeer.plant.parameters import CarParameters, ColumnParameters, RoadParameters
-from costeer.records.columns import METHOD_PREFIX, Column
+from costeer.records.columns import Column
 from costeer.sensing.measurement import Measurement
 
 P = TypeVar("P")
 S = TypeVar("S")
-
-_NAME = re.compile(r"[a-z][a-z0-9-]{0,39}")
 
 
 class Rule(NamedTuple, Generic[P, S]):
@@ -138,10 +135,16 @@ def compiled_once(make: Callable[[Method[P, S]], Any], method: Method[P, S]) -> 
 
     `manual` runs the paper's controller in the shadow: it needs no code of its own.
     """
-    key = (make, rule_of(method), method.columns)
+    key = (make, rule_of(method), method.columns, _layout(method))
     if key not in _COMPILED:
         _COMPILED[key] = make(method)
     return _COMPILED[key]
+
+
+@cache
+def _layout(method: Method[P, S]) -> tuple[tuple[str, str], ...]:
+    """How the parameters of a method lie in compiled code."""
+    return layout_of(usual_parameters(method))
 
 
 def method_sources(method: Method[P, S]) -> str:
@@ -154,88 +157,3 @@ def usual_parameters(method: Method[P, S]) -> P:
     return method.parameters(
         CONDITIONS[1], CarParameters(), ColumnParameters(), RoadParameters()
     )
-
-
-def checked_method(method: Any) -> Method[Any, Any]:  # Any: of whoever made it
-    """The method, if the loop can run it.
-
-    Raises:
-        ValueError: Naming what is missing or wrong.
-    """
-    if not isinstance(method, Method):
-        raise ValueError(
-            f"{method!r} is no method; make one with costeer.Method(name=..., ...)"
-        )
-    try:
-        return _checked(method)
-    except TypeError as error:
-        raise ValueError(
-            f"method {method.name!r} cannot be kept: {error}; give columns and "
-            "tunables as tuples"
-        ) from error
-
-
-@cache
-def _checked(method: Method[Any, Any]) -> Method[Any, Any]:
-    """`checked_method` of what is a method, judged once."""
-    if not (isinstance(method.name, str) and _NAME.fullmatch(method.name)):
-        raise ValueError(
-            f"a method is called {method.name!r}; give it a name of small letters, "
-            "digits and hyphens, as my-method"
-        )
-    for part in ("parameters", "initial_state", "step"):
-        if not callable(getattr(method, part)):
-            raise ValueError(
-                f"method '{method.name}' has no {part} function; it is "
-                f"{getattr(method, part)!r}"
-            )
-    _check_parameters(method)
-    _check_columns(method)
-    return method
-
-
-def _check_parameters(method: Method[P, S]) -> None:
-    """Refuse parameters that cannot be packed, and tunables that are none of them.
-
-    Raises:
-        ValueError: Naming them.
-    """
-    try:
-        given: Any = usual_parameters(method)  # Any: of the method's own kind
-    except (TypeError, ArithmeticError, LookupError, AttributeError) as error:
-        raise ValueError(
-            f"method '{method.name}' makes no parameters: {type(error).__name__}: "
-            f"{error}; its function takes condition, car, column and road"
-        ) from error
-    try:
-        packed(given)
-        leaves = leaf_names(given) if isinstance(given, tuple) else []
-    except (TypeError, ValueError, AttributeError) as error:
-        raise ValueError(
-            f"parameters of method '{method.name}' are no named tuple of numbers: "
-            f"{error}"
-        ) from error
-    if not hasattr(given, "_fields"):
-        raise ValueError(
-            f"parameters of method '{method.name}' are {given!r}; give a named tuple"
-        )
-    for tunable in method.tunables:
-        if tunable.leaf not in leaves:
-            raise ValueError(
-                f"tunable '{tunable.name}' of method '{method.name}' lies at "
-                f"'{tunable.leaf}', which is none of {', '.join(leaves)}"
-            )
-
-
-def _check_columns(method: Method[P, S]) -> None:
-    """Refuse columns that could be taken for costeer's own.
-
-    Raises:
-        ValueError: Naming them.
-    """
-    for column in method.columns:
-        if not column.name.startswith(METHOD_PREFIX):
-            raise ValueError(
-                f"column '{column.name}' of method '{method.name}' must begin with "
-                f"{METHOD_PREFIX}, so that it is not taken for one of costeer's own"
-            )

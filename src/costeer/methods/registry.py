@@ -7,8 +7,9 @@ from functools import cache
 from typing import Any, TypeAlias
 
 from costeer.base.plugins import advertised, is_place, load_object
+from costeer.methods.checked import checked_method
 from costeer.methods.ibhs import IBHS
-from costeer.methods.interface import Method, checked_method
+from costeer.methods.interface import Method
 from costeer.methods.manual import MANUAL
 
 AnyMethod: TypeAlias = Method[Any, Any]  # Any: parameters and state are its own

@@ -135,6 +135,7 @@ def test_a_shorter_time_is_a_likelier_crossing() -> None:
     assert (later < said).all()
 
 
+@pytest.mark.slow  # a training of its own
 def test_times_to_crossing_are_learned() -> None:
     parameters = CrossingTimeParameters(
         variants=("motion",),

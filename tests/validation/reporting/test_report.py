@@ -132,6 +132,7 @@ def test_real_csv_has_both_sides_and_the_verdict(folder: Path) -> None:
     assert found["R3"]["low"] == ""
 
 
+@pytest.mark.slow  # a report of its own
 def test_without_recordings_published_values_stand_there(tmp_path: Path) -> None:
     page = written(tmp_path, there=False)
     assert "Recordings of people were not there" in words(page)
@@ -151,6 +152,7 @@ def without(folder: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     return path
 
 
+@pytest.mark.slow  # a report of its own
 def test_a_section_without_its_input_says_so(without: Path) -> None:
     page = (without / "report.html").read_text("utf-8")
     for sentence in (
