@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from costeer.base import entry, plugins
+from costeer.base import entry
 from costeer.base.entry import COMPILED_ROOMS, cache_folder, source_hash
 
 EQUATION = """
@@ -38,12 +38,13 @@ if __name__ == "__main__":
 def write_package(folder: Path, factor: float) -> None:
     """A package of two rooms whose loop calls an equation of the plant."""
     package = folder / "costeer"
-    for room in ("base", "plant", "loop"):
+    base = Path(entry.__file__).parent
+    no_cache = shutil.ignore_patterns("__pycache__")
+    shutil.copytree(base, package / "base", ignore=no_cache, dirs_exist_ok=True)
+    for room in ("plant", "loop"):
         (package / room).mkdir(parents=True, exist_ok=True)
         (package / room / "__init__.py").touch()
     (package / "__init__.py").touch()
-    for module in (entry, plugins):
-        shutil.copy(module.__file__, package / "base")
     (package / "plant" / "equation.py").write_text(EQUATION.format(factor=factor))
     (package / "loop" / "main.py").write_text(LOOP)
 

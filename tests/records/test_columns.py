@@ -20,7 +20,8 @@ def names(**wanted: object) -> set[str]:
 
 
 def test_columns_are_those_of_the_public_format_in_its_order() -> None:
-    # As the format was published, before columns were declared once.
+    # As the format was published, before columns were declared once; what came later
+    # stands at the end.
     published = """
     time longitudinal_position lateral_position lane target_lane yaw_angle yaw_rate
     longitudinal_velocity longitudinal_acceleration lateral_velocity
@@ -29,7 +30,7 @@ def test_columns_are_those_of_the_public_format_in_its_order() -> None:
     distance_to_adjacent_lane lateral_error heading_error_rate guidance_pseudo_work
     driver_pseudo_work torque_agreement consistent crossing_probability intention mode
     event driver_intention lead_distance lead_velocity lead_lane
-    target_lateral_position head_yaw_valid accelerator brake
+    target_lateral_position head_yaw_valid accelerator brake torque_fault
     """
     assert [column.name for column in COLUMNS] == published.split()
 
@@ -37,7 +38,7 @@ def test_columns_are_those_of_the_public_format_in_its_order() -> None:
 def test_flags_numbers_of_lanes_and_modes_are_drawn_as_steps() -> None:
     stepped = """
     lane target_lane consistent intention mode event driver_intention lead_lane
-    head_yaw_valid
+    head_yaw_valid torque_fault
     """
     assert names(stepped=True) == set(stepped.split())
 
