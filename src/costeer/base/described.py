@@ -61,6 +61,9 @@ _POSITIVE = re.compile(
 )
 """Names of what would be meaningless, or divided by, at zero."""
 
+_SIGNED = re.compile(r"bias$")
+"""Names of what lies to the left or to the right, and is usually 0."""
+
 _WIDE = 100.0
 """A parameter may be so many times larger or smaller than its usual value."""
 
@@ -84,8 +87,9 @@ def allowed(name: str, value: Real | bool, unit: str) -> Allowed:
     """What a parameter may be, judged by its name, usual value and unit."""
     if isinstance(value, bool):
         return Allowed(0.0, 1.0)
-    if value < 0.0:
-        return Allowed(_WIDE * value, -_WIDE * value)
+    if value < 0.0 or _SIGNED.search(name):
+        widest = _WIDE * (abs(value) or 1.0)
+        return Allowed(-widest, widest)
     if _POSITIVE.search(name) and value > 0.0:
         return Allowed(value / _WIDE, value * _WIDE)
     if unit == "-" and value <= 1.0:
