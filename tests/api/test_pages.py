@@ -8,6 +8,8 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
+
 import costeer
 
 ROOT = Path(__file__).parents[2]
@@ -48,6 +50,7 @@ def test_the_page_names_all_that_is_public() -> None:
     assert set(costeer.__all__) - {"__version__"} <= told
 
 
+@pytest.mark.slow
 def test_the_notebook_runs_cell_by_cell(tmp_path: Path) -> None:
     cells = [c for c in NOTEBOOK["cells"] if c["cell_type"] == "code"]
     printed = run(["".join(cell["source"]) for cell in cells], tmp_path)

@@ -80,6 +80,13 @@ def test_the_usual_figure_leaves_out_what_the_record_does_not_know() -> None:
     assert len(costeer.Record({"condition": MANUAL}, known).plot().axes) == 1
 
 
+def test_panels_share_the_time_also_of_a_signal_that_begins_undefined() -> None:
+    late = np.array([np.nan, np.nan, 1.0, 2.0])
+    columns = {"time": np.arange(4.0), "lead_distance": late, "yaw_angle": late}
+    figure = costeer.Record({}, columns).plot(["lead_distance", "yaw_angle", "time"])
+    assert {axes.get_xlim() for axes in figure.axes} == {(0.0, 3.0)}
+
+
 def test_a_signal_that_is_not_there_is_an_error_with_a_suggestion(
     record: costeer.Record,
 ) -> None:

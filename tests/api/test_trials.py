@@ -12,7 +12,7 @@ import pytest
 import costeer
 from costeer.api.trials import study
 from costeer.drivers.population import participant_driver
-from costeer.loop.inputs import write_driver
+from costeer.loop.inputs import read_driver, write_driver
 from costeer.loop.scenario import TrialSetup
 from costeer.loop.trial import simulate_trial
 from costeer.methods.ibhs import IBHS
@@ -83,6 +83,12 @@ def test_a_driver_of_a_file_drives(tmp_path: Path) -> None:
     np.testing.assert_array_equal(
         found.columns["driver_torque"], expected.columns["driver_torque"]
     )
+
+
+def test_every_drawn_driver_can_be_written_and_read(tmp_path: Path) -> None:
+    for driver in costeer.population(100):
+        write_driver(tmp_path / "driver.yaml", driver, {})
+        assert read_driver(tmp_path / "driver.yaml") == driver
 
 
 def test_the_population_is_that_of_the_trials() -> None:

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple, TypeAlias, get_args
 
 from numpy.typing import NDArray
 
-from costeer.records import shown
+from costeer.pages import record as shown
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

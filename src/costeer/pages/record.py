@@ -178,6 +178,8 @@ def _panel(axes: Axes, columns: Columns, name: str, unit: str) -> None:
         )
     if np.nanmin(shown, initial=0.0) < 0.0 < np.nanmax(shown, initial=0.0):
         axes.axhline(0.0, color=RULE, linewidth=0.6, zorder=1.0)
+    # Signals that begin undefined would have an axis of their own.
+    axes.set_xlim(float(time[0]), float(time[-1]))
     axes.plot(time, shown, color=INK, linewidth=0.8, drawstyle=style)
     if name in _UNIT_RANGE:
         axes.set_ylim(-0.05, 1.05)
