@@ -45,7 +45,7 @@ def test_what_is_no_method_is_refused_with_the_way_out(name: str, told: str) -> 
         ({"name": "My Method"}, "is called 'My Method'; give it a name of small"),
         ({"step": None}, "has no step function; it is None"),
         ({"parameters": lambda *_: 1.0}, "are 1.0; give a named tuple"),
-        ({"parameters": lambda: None}, "makes no parameters: TypeError"),
+        ({"parameters": lambda: None}, "broke: TypeError"),
         ({"tunables": (TUNABLES[0]._replace(leaf="x"),)}, "lies at 'x', which is none"),
         ({"columns": COLUMNS[:1]}, "column 'time' .* must begin with method_"),
     ],
