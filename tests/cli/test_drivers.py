@@ -105,7 +105,7 @@ def test_a_fit_is_left_to_its_own_command(
     file, plot = tmp_path / "trial.parquet", tmp_path / "fit.svg"
     words = ("--fit", str(file), "--json", "--jobs", "3", "--plot", str(plot))
     assert drivers(*words) == 0
-    assert asked == [(file, True, 3, plot)]
+    assert asked == [(file, True, 3, plot, None)]
 
 
 def test_json_of_a_validation_has_no_nan(capsys: pytest.CaptureFixture[str]) -> None:
@@ -132,7 +132,7 @@ REFUSED = {
     "have a seed of their own": ("--threshold", "--seed", "3"),
     "leave --seed and --speed out": ("--fit", "x", "--seed", "3", "--speed", "20"),
     "--threshold and --validate are different tasks": ("--threshold", "--validate"),
-    "leave --out out, or add --validate": ("--out", "report"),
+    "leave --out out, or add --fit or --validate": ("--out", "report"),
     "at 70 km/h against people; leave --speed out": ("--validate", "--speed", "20"),
     "--data is for the report; add --out DIR": ("--validate", "--data", "people"),
     "folder 'nowhere' is no folder": (

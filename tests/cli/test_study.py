@@ -120,7 +120,7 @@ def test_a_file_as_folder_is_refused(
 ) -> None:
     (tmp_path / "out").write_text("mine")
     assert main(["study", "--out", str(tmp_path / "out"), *OPTIONS]) == 2
-    assert "is a file; give a folder" in capsys.readouterr().err
+    assert "is a file; give a new or empty folder" in capsys.readouterr().err
     assert (tmp_path / "out").read_text() == "mine"
 
 

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 import numpy as np
 import pytest
 
-from costeer.runtime.frame import FRAME_COLUMNS, TRACE_COLUMNS
+from costeer.runtime.frame import TRACE_COLUMNS, WIDTH
 from costeer.runtime.shared import (
     FRAME_ROWS,
     Ring,
@@ -68,7 +68,7 @@ def test_empty_ring_gives_no_rows() -> None:
 def _other_process(name: str) -> None:
     there = open_shared(name)
     there.mailbox.put(head_yaw=0.25, head_time=7.0)
-    there.frames.put(np.arange(len(FRAME_COLUMNS), dtype=float))
+    there.frames.put(np.arange(WIDTH, dtype=float))
     there.trace.put(np.arange(len(TRACE_COLUMNS), dtype=float))
     close_shared(there, unlink=False)
 
@@ -81,9 +81,7 @@ def test_another_process_writes_what_this_one_reads(shared: Shared) -> None:
     other.join(60)
     assert other.exitcode == 0
     assert shared.mailbox.get("head_yaw") == 0.25
-    np.testing.assert_array_equal(
-        shared.frames.since(0)[1], [np.arange(len(FRAME_COLUMNS))]
-    )
+    np.testing.assert_array_equal(shared.frames.since(0)[1], [np.arange(WIDTH)])
     assert shared.trace.since(0)[1].shape == (1, len(TRACE_COLUMNS))
 
 

@@ -90,7 +90,7 @@ def test_record_of_a_drive_says_when_in_utc(tmp_path: Path) -> None:
     stream = RecordStream(paths, METADATA, now=clock.__next__)
     stream.write(rows(0, 15), np.full(15, True), [])
     stream.write(rows(15, 15), np.full(15, True), [])
-    stream.write(rows(30, 0), np.full(0, True), [{"time": 0.5, "kind": "ended"}])
+    stream.write(rows(30, 0), np.full(0, True), [Marker("ended", time=0.5)])
     stream.close()
     told = read_stream(paths.stream).metadata  # also of a drive that is cut off
     assert finish(paths, stream.num_rows)

@@ -3,10 +3,14 @@
 from __future__ import annotations
 
 import math
+from pathlib import Path
 from typing import Any
 
 import pytest
 
+from costeer.intention.gru import random_weights
+from costeer.intention.weights import intention_network, save_weights
+from costeer.loop.scenario import trial_condition, trial_method
 from costeer.study.configuration import (
     PUBLISHED_STUDY,
     StudySettings,
@@ -68,11 +72,16 @@ def test_a_threshold_changes_the_hash(monkeypatch: pytest.MonkeyPatch) -> None:
     assert hash_of(SCRIPTED) != before
 
 
-def test_other_weights_change_the_hash(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("costeer.study.configuration._model_hash", lambda _: "a")
-    before = hash_of(PUBLISHED_STUDY)
-    monkeypatch.setattr("costeer.study.configuration._model_hash", lambda _: "b")
-    assert hash_of(PUBLISHED_STUDY) != before
+def test_other_weights_change_the_hash(tmp_path: Path) -> None:
+    file = tmp_path / "own.npz"
+    hashes = set()
+    for seed in (1, 2):
+        save_weights(file, intention_network(random_weights(4, seed), {}))
+        own = tmp_path / f"{seed}.npz"
+        own.write_bytes(file.read_bytes())
+        about = study_configuration(PUBLISHED_STUDY._replace(weights=str(own)))
+        hashes.add(about["intention_model_hash"])
+    assert len(hashes) == 2
 
 
 def test_settings_come_back_from_their_configuration() -> None:
@@ -111,11 +120,12 @@ def test_a_wrong_setting_is_refused(changes: dict[str, Any], message: str) -> No
 
 def test_manual_trials_know_no_other_method() -> None:
     setup = trial_setup(SCRIPTED, Trial(3, "manual", 1))
-    assert (setup.method, setup.strength_factor) == ("manual", 0.0)
+    assert trial_method(setup).name == "manual"
+    assert trial_condition(setup).strength_factor == 0.0
 
 
 def test_an_assisted_trial_takes_strength_and_duration_from_its_condition() -> None:
     setup = trial_setup(SCRIPTED, Trial(3, "weak-rapid", 4))
     assert (setup.participant, setup.condition) == (3, "weak-rapid")
-    assert (setup.method, setup.strength_factor) == ("ibhs", 0.4)
-    assert setup.change_duration == 4.0
+    assert trial_method(setup).name == "ibhs"
+    assert trial_condition(setup)[-2:] == (0.4, 4.0)

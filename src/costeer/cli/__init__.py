@@ -30,7 +30,8 @@ class CommandGroup(LazyGroup):
         "study": "Run the whole experiment with virtual drivers, then the report.",
         "simulate": "Simulate one trial, write its record and tell what happened.",
         "drivers": "Draw, plot, validate and fit virtual drivers.",
-        "parameters": "List every parameter that --set can change.",
+        "parameters": "List every parameter that --set can change: value, unit, range, "
+        "source.",
         "train": "Fit the intention network on records.",
         "evaluate": "Judge the intention network on records or a table.",
         "analyse": "Compute driving measures from records or a table.",

@@ -8,6 +8,8 @@ from typing import Any, NamedTuple
 from costeer.base.described import value_at, with_value_at
 from costeer.loop.parameters import LoopParameters
 from costeer.methods.conditions import CONDITION_NAMES, condition
+from costeer.methods.ibhs import IBHS
+from costeer.methods.manual import MANUAL
 from costeer.methods.registry import method_named
 from costeer.runtime.cabin import Cabin
 from costeer.runtime.markers import Kind, Marker
@@ -58,9 +60,19 @@ def followed(chosen: Chosen, marker: Marker) -> Chosen:
         case Marker(kind="method", after=str(name)):
             return chosen._replace(method=name)
         case Marker(kind="parameter", after=float(value)):
-            own = {**chosen.tuned.get(chosen.method, {}), marker.name: value}
-            return chosen._replace(tuned={**chosen.tuned, chosen.method: own})
+            own = {**_tuned(chosen), marker.name: value}
+            return chosen._replace(tuned={**chosen.tuned, _owner(chosen): own})
     return chosen
+
+
+def _owner(chosen: Chosen) -> str:
+    """Whose tuned values hold: manual driving runs the paper's method in the shadow."""
+    return IBHS.name if chosen.method == MANUAL.name else chosen.method
+
+
+def _tuned(chosen: Chosen) -> Values:
+    """Tuned values of the method that was chosen."""
+    return chosen.tuned.get(_owner(chosen), {})
 
 
 def chosen_setup(setup: DriveSetup, chosen: Chosen) -> DriveSetup:
@@ -72,7 +84,7 @@ def chosen_parameters(setup: DriveSetup, chosen: Chosen) -> LoopParameters[Any]:
     """All parameters of the loop under what was chosen."""
     now = chosen_setup(setup, chosen)
     method, parameters = drive_method(now), drive_parameters(now)
-    for name, value in chosen.tuned.get(chosen.method, {}).items():
+    for name, value in _tuned(chosen).items():
         parameters = with_value_at(
             parameters, place_of(tunable_named(method, name)), value
         )

@@ -139,7 +139,7 @@ def under(setup: DriveSetup, condition: str, method: str) -> DriveSetup:
     places = offered_methods(setup)
     if method not in places:
         raise ValueError(
-            f"method '{method}' is not offered in this drive; choose one of "
+            f"method '{method}' is not known to this drive; choose one of "
             f"{', '.join(places)}"
         )
     trial = setup.trial._replace(
