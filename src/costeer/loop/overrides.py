@@ -9,6 +9,7 @@ from costeer.base.array import Real
 from costeer.base.described import Described, described, nearest, with_values
 from costeer.loop.parameters import LoopParameters
 from costeer.methods.conditions import Condition
+from costeer.methods.interface import usual_parameters
 from costeer.methods.registry import AnyMethod
 
 METHOD = "controller."
@@ -63,6 +64,15 @@ def built(
     around = with_values(world, others)
     controller = method.parameters(condition, around.car, around.column, around.road)
     return with_values(around._replace(controller=controller), own)
+
+
+def shared_values(
+    world: LoopParameters[Any], method: AnyMethod, values: Mapping[str, Real]
+) -> dict[str, Real]:
+    """Those of the values that a trial with another method has too."""
+    like = world._replace(controller=usual_parameters(method))
+    known = {each.name for each in described(like)}
+    return {n: v for n, v in values.items() if {n, METHOD + n} & known}
 
 
 def _full_name(name: str, known: set[str]) -> str:

@@ -11,7 +11,7 @@ from costeer.drivers.population import hands_off, participant_driver
 from costeer.intention.predictors.chosen import Judge
 from costeer.intention.predictors.interface import Predictor
 from costeer.intention.predictors.registry import OURS
-from costeer.loop.overrides import built
+from costeer.loop.overrides import built, shared_values
 from costeer.loop.parameters import LoopParameters, StartParameters
 from costeer.loop.tick import (
     INTENTION_NETWORK,
@@ -247,9 +247,10 @@ def loop_parameters(setup: TrialSetup) -> LoopParameters[Any]:
         follows_plan=1.0 if setup.follows_plan else 0.0,
         plant_steps=setup.plant_steps,
     )
-    return built(
-        world,
-        trial_method(setup),
-        trial_condition(setup),
-        dict(setup.parameters),
-    )
+    chosen, driven = method_named(setup.method), trial_method(setup)
+    condition, values = trial_condition(setup), dict(setup.parameters)
+    parameters = built(world, chosen, condition, values)
+    if driven is chosen:
+        return parameters
+    # Manual driving has no parameters of a method from outside; the names are right.
+    return built(world, driven, condition, shared_values(world, driven, values))
