@@ -117,7 +117,9 @@ def completed(
         raise ValueError(
             f"{_unknown(name)}; or give a condition of your own a strength_factor"
         )
-    if difflib.get_close_matches(name, CONDITION_NAMES, n=1, cutoff=_MISSPELT):
+    derived = name.startswith(tuple(f"{known}-" for known in CONDITION_NAMES))
+    near = difflib.get_close_matches(name, CONDITION_NAMES, n=1, cutoff=_MISSPELT)
+    if near and not derived:
         raise ValueError(_unknown(name))
     if not 0.0 <= strength_factor <= 1.0:
         raise ValueError(

@@ -185,6 +185,7 @@ def _plugged_in(settings: StudySettings, method: AnyMethod) -> dict[str, object]
     drivers = [_driver_in(file) for file in settings.drivers]
     car = setup.car
     return {
+        "method_name": method.name,
         "method_version": method.version,
         "method_source_hash": method_sources(method),
         "intention_model_hash": None if predictor is None else predictor.hash,

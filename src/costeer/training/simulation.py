@@ -7,7 +7,6 @@ the frozen population, with numbers that no study has.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 
@@ -47,8 +46,7 @@ def manual_setup(participant: int, seed: int, place: int, trial: int = 0) -> Tri
         participant=participant,
         seed=seed,
         condition=f"manual-{trial}" if trial else "manual",
-        method="manual",
-        change_duration=math.nan,
+        strength_factor=0.0,
         speed=SPEEDS_KMH[(place + max(trial - 1, 0)) % len(SPEEDS_KMH)] / 3.6,
         intention="off",
         abandoned_share=ABANDONED_SHARE,

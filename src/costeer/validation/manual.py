@@ -80,7 +80,11 @@ def manual_record(seed: int, participant: int, condition: str = MANUAL) -> Trial
     """
     return simulate_trial(
         TrialSetup(
-            participant=participant, seed=seed, condition=condition, intention="off"
+            participant=participant,
+            seed=seed,
+            condition=condition,
+            strength_factor=0.0,
+            intention="off",
         )
     )
 

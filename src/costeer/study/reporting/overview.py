@@ -168,7 +168,7 @@ def _dropped(whole: Tally) -> str:
 
 def _method_sentence(material: StudyMaterial) -> str:
     configuration = material.study.configuration
-    method = str(configuration.get("method", "ibhs"))
+    method = str(configuration.get("method_name", configuration.get("method", "ibhs")))
     intention = str(configuration.get("intention", "network"))
     model = str(configuration.get("intention_model_hash") or "")[:12]
     reading = {
