@@ -116,7 +116,7 @@ def test_simulated_drivers_are_judged(
     assert json.loads(capsys.readouterr().out)["num_drivers"] == 2
     # Training counts from 100001, studies from 1.
     assert [setup.participant for setup in asked] == [300_001, 300_002]
-    assert {(setup.seed, setup.method) for setup in asked} == {(4, "manual")}
+    assert {(setup.seed, setup.strength_factor) for setup in asked} == {(4, 0.0)}
 
 
 @pytest.mark.parametrize(
