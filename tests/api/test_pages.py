@@ -37,6 +37,7 @@ def run(blocks: list[str], folder: Path) -> str:
     return done.stdout
 
 
+@pytest.mark.slow
 def test_the_python_of_the_page_runs(tmp_path: Path) -> None:
     printed = run(re.findall(r"```python\n(.*?)```", PAGE, re.DOTALL), tmp_path)
     assert printed.startswith("<costeer record: participant 3, strong-normal, ibhs")

@@ -88,6 +88,7 @@ def test_each_public_name_has_an_example_that_runs(name: str) -> None:
     assert (failed, tried) == (0, len(examples.examples))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("first", ["costeer.study.run", "costeer"])
 def test_study_is_a_room_and_runs_whatever_was_imported_first(first: str) -> None:
     code = (

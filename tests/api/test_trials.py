@@ -160,6 +160,7 @@ def test_number_of_drivers_must_be_one_or_more() -> None:
         costeer.population(0)
 
 
+@pytest.mark.slow
 def test_a_function_of_windows_is_judged_as_the_predictor_it_copies() -> None:
     from costeer.intention.predictors.registry import predictor
 

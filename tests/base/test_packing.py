@@ -64,6 +64,7 @@ def test_unpacking_undoes_packing(value: Outer) -> None:
     assert isinstance(again.inner.held, bool)
 
 
+@pytest.mark.slow
 @given(OUTERS)
 def test_compiled_packing_equals_packing_in_python(value: Outer) -> None:
     array = np.full(packed_size(value), math.nan)

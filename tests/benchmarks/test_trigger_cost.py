@@ -58,6 +58,7 @@ def test_all_conditions_meet_the_same_driver_with_the_same_noise() -> None:
         assert {s.intention for s in setups} == {"off"}
 
 
+@pytest.mark.slow
 def test_a_false_trigger_comes_once_to_a_driver_who_has_nothing_to_overtake() -> None:
     setups = [falsely_triggered("weak-rapid", SEED, 1, trial) for trial in range(4)]
     assert [len(setup.trigger_times) for setup in setups] == [1] * 4

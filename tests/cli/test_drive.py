@@ -116,6 +116,7 @@ def test_frames_and_markers_go_to_lsl_with_the_time_of_their_making(
     assert sent[1] == Marker("paused", "driver")
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("compiled_drive")
 @pytest.mark.skipif(os.name != "posix", reason="there is no such signal")
 @pytest.mark.parametrize("how", [signal.SIGINT, signal.SIGTERM], ids=["Ctrl-C", "term"])

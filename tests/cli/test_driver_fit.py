@@ -39,6 +39,7 @@ def file(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return path
 
 
+@pytest.mark.slow
 def test_tables_name_estimates_and_what_is_not_identified(
     file: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -48,6 +49,7 @@ def test_tables_name_estimates_and_what_is_not_identified(
         assert word in printed
 
 
+@pytest.mark.slow
 def test_json_has_the_same_and_the_figure_is_written(
     file: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -69,6 +71,7 @@ def csv(path: Path, columns: dict[str, np.ndarray]) -> Path:
     return path
 
 
+@pytest.mark.slow
 def test_a_csv_with_the_needed_columns_is_enough(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -103,6 +106,7 @@ def test_a_driver_whom_the_model_does_not_describe_is_noted(
     assert "does not describe this driver well" in capsys.readouterr().err
 
 
+@pytest.mark.slow
 def test_a_drive_too_slow_for_the_simulator_is_fitted_and_not_checked(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -27,6 +27,7 @@ def test_without_flags_it_lists_what_differs(
     assert f"population {POPULATION_VERSION}" in shown
 
 
+@pytest.mark.slow
 def test_without_validation_the_plot_is_of_the_population(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

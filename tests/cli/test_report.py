@@ -51,6 +51,7 @@ def test_records_alone_bring_back_every_byte(
     assert "without" not in shown.err  # nothing is lacking
 
 
+@pytest.mark.slow
 def test_half_written_and_missing_records_are_named_and_not_believed(
     bare: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

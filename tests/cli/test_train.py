@@ -186,6 +186,7 @@ def test_options_that_do_not_go_together_are_told(
     assert said in refusal(capsys)
 
 
+@pytest.mark.slow
 def test_a_network_goes_on_learning_from_a_table(weights: Path, tmp_path: Path) -> None:
     source, out = table(tmp_path / "d.csv"), tmp_path / "tuned.npz"
     words = ["train", str(source), "--start", str(weights), "--out", str(out)]

@@ -123,6 +123,7 @@ def test_drivers_together_in_jax_drive_as_each_alone() -> None:
         assert relative_difference(drove, alone).max() < 1e-9
 
 
+@pytest.mark.slow
 def test_a_road_that_ends_ends_the_trial_in_every_engine() -> None:
     parameters = early_event(STRONG)
     short = parameters._replace(road=parameters.road._replace(length=200.0))

@@ -105,6 +105,7 @@ def test_the_fitted_driver_has_the_estimates_and_else_the_usual_values() -> None
     assert value_of(fit.driver, "reliance.reliance") == 0.5
 
 
+@pytest.mark.slow
 def test_a_mirrored_recording_mirrors_the_bias_and_nothing_else() -> None:
     record = part_of_a_drive()
     mirror = record._replace(columns=mirrored(record.columns))
@@ -120,6 +121,7 @@ def test_a_mirrored_recording_mirrors_the_bias_and_nothing_else() -> None:
             assert abs(a - b) < 0.02 * width, name
 
 
+@pytest.mark.slow
 def test_a_wheel_that_never_moves_tells_nothing_of_inertia_and_damping() -> None:
     fit = fit_of_a_still_wheel()
     reasons = {each.name: each.reason for each in fit.not_identified}
@@ -128,12 +130,14 @@ def test_a_wheel_that_never_moves_tells_nothing_of_inertia_and_damping() -> None
     assert {"arm.inertia", "arm.damping"}.isdisjoint(by_name(fit))
 
 
+@pytest.mark.slow
 def test_what_is_left_of_a_wheel_that_never_moves_is_estimated() -> None:
     # Torque then tells stiffness times noise, not each: one of them is held.
     found = by_name(fit_of_a_still_wheel())
     assert {"vision.near_noise", "tracking.wander_deviation"} & found.keys()
 
 
+@pytest.mark.slow
 def test_without_head_and_leader_those_rows_say_why() -> None:
     absent = {"head_yaw": None, "event": None, "lead_distance": None}
     fit = fit_driver(with_columns(part_of_a_drive(), **absent))
@@ -187,6 +191,7 @@ def test_every_interval_holds_its_estimate() -> None:
         assert math.isfinite(estimate.high)
 
 
+@pytest.mark.slow
 def test_a_shorter_recording_tells_less() -> None:
     whole = by_name(fit_of(1))
     part = by_name(fit_of_a_part())

@@ -73,6 +73,7 @@ def test_an_absent_signal_is_missed(variant: str) -> None:
     assert np.nanmax(gap) > DIFFERENCE
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("variant", LACKING)
 def test_without_signals_each_verdict_equals_a_fresh_run(variant: str) -> None:
     weights, features, absent = lively_weights(16), signals(500), LACKING[variant]

@@ -106,7 +106,9 @@ def as_bytes(record: TrialRecord) -> dict[str, bytes]:
     return {name: np.ma.filled(v, -9).tobytes() for name, v in record.columns.items()}
 
 
-@pytest.mark.parametrize("engine", ["numba", "python"])
+@pytest.mark.parametrize(
+    "engine", [pytest.param("numba", marks=pytest.mark.slow), "python"]
+)
 def test_a_method_that_asks_for_nothing_gives_nothing(engine: str) -> None:
     columns = trial(CALM, engine).columns
     assert not columns["applied_torque"].any()
@@ -115,6 +117,7 @@ def test_a_method_that_asks_for_nothing_gives_nothing(engine: str) -> None:
     assert trial(IBHS).columns["applied_torque"].any()  # which would push back
 
 
+@pytest.mark.slow
 def test_what_a_method_does_not_compute_is_missing_in_its_record() -> None:
     columns = trial(CALM).columns
     assert np.isnan(columns["lateral_error"]).all()
@@ -248,6 +251,7 @@ def gain():
 """
 
 
+@pytest.mark.slow
 def test_an_edited_file_runs_as_edited_and_an_unchanged_one_from_the_cache(
     tmp_path: Path,
 ) -> None:

@@ -27,6 +27,7 @@ def imitation(window: Window) -> float:
     return float(crossing_probabilities(load_weights().weights, window)[-1])
 
 
+@pytest.mark.slow
 def test_the_network_called_from_outside_drives_the_same_trial() -> None:
     inside = simulate_trial(SETUP)
     outside = simulate_trial(SETUP._replace(predictor=imitation))

@@ -133,6 +133,7 @@ def test_paths_of_driver_and_following_system_are_one(participant: int) -> None:
         assert np.abs(apart).max() < abs(bias) + 0.06
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("participant", WHO)
 def test_otherwise_changes_last_as_the_method_says(participant: int) -> None:
     found = changes(participant, follows_plan=0.0)

@@ -80,6 +80,7 @@ def begin() -> Iterator[Begin]:
         drive.stop()
 
 
+@pytest.mark.slow
 def test_change_goes_from_the_command_to_the_record_with_all_its_fields(
     begin: Begin, tmp_path: Path
 ) -> None:
@@ -150,6 +151,7 @@ def torque_cell() -> Iterator[tuple[str, NDArray[np.float64]]]:
     memory.unlink()
 
 
+@pytest.mark.slow
 @needs_posix
 @pytest.mark.parametrize("how", ["SIGKILL", "SIGSTOP", "SIGHUP"])
 def test_wheel_is_let_go_and_the_record_kept_when_the_loop_dies_or_sticks(
@@ -190,6 +192,7 @@ def test_nobody_drives_on_when_the_watchdog_is_gone(begin: Begin) -> None:
         drive.send("resume")
 
 
+@pytest.mark.slow
 def test_wheel_that_is_not_there_is_told_in_its_own_words(begin: Begin) -> None:
     setup = wheel_setup()
     broken = simulated_description()._replace(address='{"speed": 1}')
@@ -216,6 +219,7 @@ if __name__ == "__main__":
 """
 
 
+@pytest.mark.slow
 @needs_posix
 def test_killed_server_leaves_the_stream_and_the_loop_ends_by_itself(
     tmp_path: Path,

@@ -164,6 +164,7 @@ for k in range(1000):
 """
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(os.name != "posix", reason="there is no kill -9")
 def test_killed_process_leaves_all_that_it_had_flushed(tmp_path: Path) -> None:
     path = tmp_path / "trial.parquet"

@@ -75,6 +75,7 @@ def test_a_killed_study_goes_on_where_it_was(tmp_path: Path) -> None:
     assert contents(out) == contents(whole)
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(sys.platform == "win32", reason="no SIGINT for one process there")
 def test_ctrl_c_ends_with_130_and_says_how_to_resume(tmp_path: Path) -> None:
     out, whole = tmp_path / "out", tmp_path / "whole"

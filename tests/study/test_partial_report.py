@@ -16,6 +16,8 @@ from costeer.study.material import find_records
 from costeer.study.report import write_report
 from costeer.study.trial_tables import LANE_CHANGES_FILE, TRIALS_FILE
 
+pytestmark = pytest.mark.slow
+
 Keep = Callable[[int, str], bool]
 
 

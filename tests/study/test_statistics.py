@@ -51,6 +51,7 @@ def silent_gaps(found: StudyTests) -> list[object]:
     ]
 
 
+@pytest.mark.slow
 def test_degrees_of_freedom_are_those_of_the_paper() -> None:
     trials, changes = made_up_study()
     everything = usual_outcome()
@@ -180,6 +181,7 @@ def test_names_of_participants_change_nothing() -> None:
     )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("scale", [math.pi / 180.0, 1e3])
 def test_unit_of_a_measure_does_not_change_its_tests(scale: float) -> None:
     trials, changes = made_up_study()
@@ -299,6 +301,7 @@ def test_one_strength_still_has_its_durations_compared() -> None:
     assert strength.note.startswith("fewer than two levels")
 
 
+@pytest.mark.slow
 @given(st.integers(0, 2**32 - 1), st.floats(0.0, 1.0), st.sampled_from([0.0, 0.1, 1e6]))
 @settings(max_examples=15)
 def test_no_gap_is_silent_whatever_is_missing(
@@ -329,6 +332,7 @@ def test_masked_entry_is_a_missing_one() -> None:
     assert effect(found, "sdlp", "published").n == 83
 
 
+@pytest.mark.slow
 def test_data_frames_and_lists_give_the_same_as_arrays() -> None:
     tables = made_up_study(3)
     expected = repr(study_tests(*tables))

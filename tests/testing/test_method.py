@@ -52,6 +52,7 @@ def test_a_torque_of_a_method_that_does_not_assist_is_refused() -> None:
         checked(rival(rivals.damping)._replace(assists=False))
 
 
+@pytest.mark.slow
 def test_a_column_that_mirrors_other_than_it_says_is_refused() -> None:
     column = Column("method_rate", "rad/s", "float64", "of the wheel", "method.last")
     with pytest.raises(MethodError, match="column method_rate is"):
@@ -62,6 +63,7 @@ def test_a_column_that_mirrors_other_than_it_says_is_refused() -> None:
     )
 
 
+@pytest.mark.slow
 def test_a_method_that_is_not_compiled_is_refused_by_numba() -> None:
     with pytest.raises(ValueError, match=r"'rival' cannot be compiled.*@compiled"):
         check_method(rival(rivals.damping), jax=False)
@@ -73,6 +75,7 @@ def test_the_methods_of_costeer_pass_in_python(name: str) -> None:
     assert "a sample of NaN gives a finite torque" in str(report)
 
 
+@pytest.mark.slow
 def test_the_example_passes_in_every_engine_and_is_short() -> None:
     report = check_method(str(FILE), jax=True)
     said = dict(report.findings)
@@ -84,6 +87,7 @@ def test_the_example_passes_in_every_engine_and_is_short() -> None:
     assert sum(map(bool, map(str.strip, FILE.read_text("utf-8").splitlines()))) < 60
 
 
+@pytest.mark.slow
 def test_the_page_runs(monkeypatch: pytest.MonkeyPatch) -> None:
     root = Path(__file__).parents[2]
     monkeypatch.chdir(root)

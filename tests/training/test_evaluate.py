@@ -80,6 +80,7 @@ def test_intervals_hold_the_value() -> None:
     assert set(RESULT["interval_95"]) >= wanted
 
 
+@pytest.mark.slow
 def test_drivers_alike_give_narrow_intervals_unlike_ones_wide() -> None:
     blind = [
         r._replace(features=r.features * np.array([1, 1, 1, 1, 1, 0.3]))

@@ -70,6 +70,7 @@ def area(weights: NetworkWeights, absent: tuple[str, ...] = ()) -> float:
     return sample_scores(*judged_samples(drivers), 0.5)["pr_auc"]
 
 
+@pytest.mark.slow
 def test_the_trained_network_is_the_reference_network() -> None:
     start = initial_weights(5, 0.1, seed=3)
     start = start._replace(hidden_bias=start.hidden_bias + 0.3)
@@ -169,6 +170,7 @@ def test_only_variants_with_a_share_are_trained() -> None:
     assert trained_variants(some) == ["full", "head"]
 
 
+@pytest.mark.slow
 def test_the_same_seed_gives_the_same_weights() -> None:
     data, scale = data_of(drives(3, num_changes=1))
     short = TINY._replace(num_steps=5, steps_per_check=5)
@@ -181,6 +183,7 @@ def test_the_same_seed_gives_the_same_weights() -> None:
     assert (first.hidden_weights != other.hidden_weights).any()
 
 
+@pytest.mark.slow
 def test_training_stops_when_nothing_gets_better() -> None:
     data, scale = data_of(drives(3, num_changes=1))
     wild = FitParameters(

@@ -34,11 +34,13 @@ def test_there_and_back_is_the_same_network() -> None:
     assert same(network_weights(trained_weights(START), scale), START)
 
 
+@pytest.mark.slow
 def test_no_step_changes_nothing_but_the_first() -> None:
     still = FEW._replace(learning_rate=0.0, num_steps=1)
     assert same(fine_tuned(START, drives(3), 1, still), START)
 
 
+@pytest.mark.slow
 def test_it_learns_from_the_recordings_and_keeps_its_scaling() -> None:
     unseen = [drive(30), drive(31)]
     tuned = fine_tuned(START, drives(6), 1, FEW)

@@ -137,6 +137,7 @@ def test_a_sine_has_its_own_deviations_and_each_turn_is_a_departure() -> None:
     assert found.distance == pytest.approx(2000.0, rel=0.001)
 
 
+@pytest.mark.slow
 def test_counts_and_sdlp_are_those_of_the_study() -> None:
     record = simulate_trial(
         TrialSetup(participant=2, seed=PILOT_SEED, condition="manual", intention="off")

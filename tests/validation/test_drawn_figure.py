@@ -26,6 +26,7 @@ def svg(num_drivers: int) -> str:
     return population_parameters_svg(population(num_drivers))
 
 
+@pytest.mark.slow
 def test_the_same_population_gives_the_same_figure() -> None:
     assert population_parameters_svg(population(6)) == svg(6)
 

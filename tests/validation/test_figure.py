@@ -6,6 +6,8 @@ import math
 import re
 from functools import cache
 
+import pytest
+
 from costeer.validation.figure import population_svg
 from costeer.validation.manual import ManualDriving, Row
 
@@ -42,6 +44,7 @@ def svg() -> str:
     return population_svg(made_up(20))
 
 
+@pytest.mark.slow
 def test_the_same_driving_gives_the_same_figure() -> None:
     assert population_svg(made_up(20)) == svg()
 

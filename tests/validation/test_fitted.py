@@ -28,6 +28,7 @@ def checks(driver: DriverParameters) -> dict[str, Check]:
     return {c.measure: c for c in check_fit(recorded(1), fit, 2, REPEATS)}
 
 
+@pytest.mark.slow
 def test_the_true_driver_drives_like_the_recording() -> None:
     found = checks(true_driver(1))
     assert set(found) == {"sdlp", "swrr", "driver_torque_rms", "lane_change_duration"}
@@ -36,6 +37,7 @@ def test_the_true_driver_drives_like_the_recording() -> None:
         assert abs(check.recorded - check.mean) < 6.0 * check.deviation, check
 
 
+@pytest.mark.slow
 def test_a_driver_who_wanders_twice_as_much_is_flagged() -> None:
     truth = true_driver(1)
     wide = with_value(truth, "tracking.wander_deviation", 0.6)
@@ -44,6 +46,7 @@ def test_a_driver_who_wanders_twice_as_much_is_flagged() -> None:
     assert checks(slow)["lane_change_duration"].flagged
 
 
+@pytest.mark.slow
 def test_the_same_check_gives_the_same_numbers_with_any_number_of_threads() -> None:
     one = check_fit(recorded(1), fitted(), 1, 3)
     two = check_fit(recorded(1), fitted(), 2, 3)
@@ -92,6 +95,7 @@ def test_a_speed_outside_the_simulator_is_refused() -> None:
         same_trial(with_columns(recorded(1), longitudinal_velocity=slow))
 
 
+@pytest.mark.slow
 def test_the_figure_has_a_panel_for_each_estimate_and_the_same_text_twice() -> None:
     fit = fitted()
     assert fit_svg(fit, 19.4) == fit_svg(fit, 19.4)

@@ -50,6 +50,7 @@ WIDE = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", WIDE)
 def test_a_dozen_drivers_drive_much_like_people(name: str) -> None:
     low, high = WIDE[name]

@@ -143,6 +143,7 @@ def test_settling_time_is_when_the_last_excursion_ends() -> None:
     assert settling_time(0.05 * np.ones(10)) == 0.0
 
 
+@pytest.mark.slow
 def test_nobody_of_a_dozen_swings_or_leaves_the_road() -> None:
     found = dozen()
     assert not oscillates(found).any()

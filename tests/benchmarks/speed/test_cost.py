@@ -138,6 +138,7 @@ def test_a_system_without_that_clock_is_a_named_line(
     assert found == [Skipped("verdict, 8 units", "verdict, 8 units", "no clock")]
 
 
+@pytest.mark.slow
 def test_the_limit_stands_before_the_verdicts() -> None:
     names = [each.name for each in measure_limit(TINY)]
     assert names[0] == "fused multiply-add"

@@ -77,6 +77,7 @@ def test_without_a_page_nothing_is_said_of_one() -> None:
     assert not [name for name in found if "page" in name]
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("compiled_drive")
 def test_a_real_drive_gives_every_figure_but_those_of_a_page() -> None:
     # How many steps two seconds hold is for the benchmark to judge, not for a machine

@@ -67,6 +67,7 @@ class QueueSink(NamedTuple):
         self.queue.put(HeadReading(time, head_yaw, valid))
 
 
+@pytest.mark.slow
 def test_a_process_tells_calibrated_yaw_and_survives_the_end_of_the_film(
     face_then_none: Path,
 ) -> None:

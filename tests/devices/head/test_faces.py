@@ -45,6 +45,7 @@ def yaw_at(shape: str, yaw_deg: float) -> float:
     return math.degrees(state.head_yaw)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("shape", ["canonical", "own"])
 def test_calibrated_yaw_is_right_within_30_degrees(shape: str) -> None:
     looks = [

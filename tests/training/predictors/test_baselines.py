@@ -56,6 +56,7 @@ RECORDINGS = drives(5, num_changes=1)
 SPLIT = Split(RECORDINGS[:3], RECORDINGS[3:4], RECORDINGS[4:])
 
 
+@pytest.mark.slow
 def test_all_are_fitted_with_their_facts() -> None:
     done: list[int] = []
     found = train_baselines(SPLIT, 1, done.append, parameters=TINY)

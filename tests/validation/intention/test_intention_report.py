@@ -132,6 +132,7 @@ def test_a_monotone_change_of_the_score_changes_no_verdict() -> None:
     )
 
 
+@pytest.mark.slow
 def test_an_earlier_report_is_written_over_and_its_extra_figures_go(
     tmp_path: Path,
 ) -> None:

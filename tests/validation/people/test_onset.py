@@ -73,6 +73,7 @@ def test_a_larger_error_is_corrected_with_a_larger_angle() -> None:
     assert answer(driver, 2.0).peak > answer(driver, 1.0).peak
 
 
+@pytest.mark.slow
 def test_a_test_repeats_itself_and_holds_both_errors() -> None:
     first = onset_test(PILOT, 3, repeats=2)
     assert first == onset_test(PILOT, 3, repeats=2)

@@ -165,6 +165,7 @@ def test_a_section_without_its_input_says_so(without: Path) -> None:
     assert (without / "real.csv").read_text("utf-8").startswith("name,quantity,unit")
 
 
+@pytest.mark.slow
 def test_a_figure_of_an_earlier_report_does_not_stay(
     folder: Path, without: Path
 ) -> None:
