@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 from costeer.base import array as xp
 from costeer.base.array import Real, compiled
-from costeer.controller.signals import NO_ASSISTANCE, Assistance, Request
+from costeer.controller.signals import Assistance, Request
 from costeer.methods.interface import Method, Tunable
 from costeer.records.columns import Column
 from costeer.sensing.measurement import Measurement
@@ -51,7 +51,7 @@ def step(
     wanted = gains.offset * offset + gains.integral * integral
     torque = -wanted - gains.yaw * measured.yaw_angle
     applied = xp.clip(torque, -gains.limit, gains.limit)
-    return State(integral), NO_ASSISTANCE._replace(applied_torque=applied)
+    return State(integral), Assistance(applied_torque=applied)
 
 
 SUM = Column("method_integral", "m·s", "float64", "of the offset", "method.integral")

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import errno
+import os
 from pathlib import Path
 
 import pytest
@@ -68,3 +70,27 @@ def test_a_folder_that_cannot_be_written_is_named(
     monkeypatch.setattr(Path, "touch", refuse)
     with pytest.raises(OSError, match="Permission denied; choose another folder"):
         prepare_folder(tmp_path / "new", "report.html", "report")
+
+
+def test_a_durable_file_is_on_the_disk_before_it_takes_its_name(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    file, told = tmp_path / "drive.parquet", []
+
+    def synchronised(descriptor: int) -> None:
+        there = Path(f"/proc/self/fd/{descriptor}").readlink()
+        told.append((there.suffix, file.exists()))
+
+    monkeypatch.setattr(os, "fsync", synchronised)
+    with replacing(file, durable=True) as partial:
+        partial.write_text("rows")
+    assert told == [(".tmp", False), (tmp_path.suffix, True)]
+
+
+def test_an_error_of_the_disk_names_the_file(tmp_path: Path) -> None:
+    def fill() -> None:
+        with replacing(tmp_path / "table.csv"):
+            raise OSError(errno.ENOSPC, "PyArrow's own words")
+
+    with pytest.raises(OSError, match=r"No space left on device: '.*table\.csv'"):
+        fill()

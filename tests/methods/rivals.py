@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from costeer.base.array import Real
-from costeer.controller.signals import NO_ASSISTANCE, Assistance, Request
+from costeer.controller.signals import Assistance, Request
 from costeer.methods.interface import Method
 from costeer.methods.registry import AnyMethod, method_named
 from costeer.sensing.measurement import Measurement
@@ -54,7 +54,7 @@ def rival(law: Law, gain: Any = 1.0, last: Any = 0.0) -> AnyMethod:
 
 
 def torque(value: Real) -> Assistance:
-    return NO_ASSISTANCE._replace(applied_torque=value)
+    return Assistance(applied_torque=value)
 
 
 def damping(

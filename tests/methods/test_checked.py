@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from costeer.controller.signals import NO_ASSISTANCE
+from costeer.controller.signals import Assistance
 from costeer.methods.checked import checked_method
 from costeer.methods.interface import Method, Tunable
 from costeer.methods.registry import AnyMethod
@@ -42,7 +42,7 @@ def answering(answer: Any) -> AnyMethod:
             r"gives applied_torque as an array of shape \(2,\); give a number",
         ),
         (
-            rival(lambda *_: (Memory(np.zeros(3)), NO_ASSISTANCE), last=np.zeros(2)),
+            rival(lambda *_: (Memory(np.zeros(3)), Assistance()), last=np.zeros(2)),
             r"an array of shape \(3,\), it was an array of shape \(2,\)",
         ),
         (rival(damping)._replace(parameters=lambda: Gain(1.0)), "parameters .* broke"),

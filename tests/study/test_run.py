@@ -23,6 +23,7 @@ from costeer.study.run import (
     study_command,
 )
 from costeer.study.trials import TrialDone
+from tests.methods.rivals import FILE
 from tests.study.fakes import (
     NUM_TRIALS,
     SMALL,
@@ -31,6 +32,8 @@ from tests.study.fakes import (
     plain_report,
     run_small,
 )
+
+OWN = str(FILE)
 
 
 class Stop(Exception):
@@ -126,6 +129,17 @@ def test_a_fault_in_the_middle_keeps_what_is_finished(
     run_study(tmp_path, SMALL, jobs=1, report=plain_report, simulate=simulate)
     assert len(asked) == NUM_TRIALS - 3
     assert contents(tmp_path) == whole
+
+
+def test_a_plug_in_that_does_not_run_is_refused_before_there_is_a_folder(
+    tmp_path: Path,
+) -> None:
+    out = tmp_path / "study"
+    own = SMALL._replace(method=OWN)
+    refusal = ValueError("it does not run")
+    with pytest.raises(ValueError, match="it does not run"):
+        run_study(out, own, report=None, simulate=after(0, refusal))
+    assert not out.exists()
 
 
 def test_a_refused_trial_is_named(tmp_path: Path) -> None:

@@ -9,25 +9,59 @@ from pathlib import Path
 
 
 @contextmanager
-def replacing(path: Path) -> Iterator[Path]:
+def replacing(path: Path, durable: bool = False) -> Iterator[Path]:
     """Yield a file beside `path` to write; it takes the place of `path` at the end.
 
     If the writing fails, `path` is what it was. A process that is killed leaves a file
     whose name begins with that of `path` and ends in `.tmp`.
+
+    Args:
+        path: To be there whole or not at all.
+        durable: Whether it is on the disk afterwards, also if the power fails.
+
+    Raises:
+        OSError: If it cannot be written; it names `path`.
     """
     partial = path.with_name(f"{path.name}.{os.getpid()}.tmp")
     try:
         yield partial
+        if durable:
+            _synchronise(partial)
         partial.replace(path)
-    except BaseException:
+        if durable and os.name == "posix":  # Windows opens no folders
+            _synchronise(path.parent)
+    except BaseException as error:
         partial.unlink(missing_ok=True)
+        if isinstance(error, OSError) and error.errno and not error.filename:
+            raise OSError(error.errno, os.strerror(error.errno), str(path)) from error
         raise
+
+
+def _synchronise(path: Path) -> None:
+    """Have the disk take what was written to a file, or a folder's names."""
+    descriptor = os.open(path, os.O_RDONLY if path.is_dir() else os.O_RDWR)
+    try:
+        os.fsync(descriptor)
+    finally:
+        os.close(descriptor)
 
 
 def write_text(path: Path, text: str) -> None:
     """Write a text file, whole or not at all, with the same bytes on every system."""
     with replacing(path) as partial:
         partial.write_text(text, encoding="utf-8", newline="\n")
+
+
+def try_writing(path: Path) -> None:
+    """Find out before minutes of work whether a file can be written.
+
+    Raises:
+        OSError: If it cannot.
+    """
+    path.parent.mkdir(parents=True, exist_ok=True)
+    probe = path.with_name(f"{path.name}.{os.getpid()}.tmp")
+    probe.touch()
+    probe.unlink()
 
 
 def prepare_folder(
@@ -50,9 +84,7 @@ def prepare_folder(
     try:
         folder.mkdir(parents=True, exist_ok=True)
         _refuse_foreign(folder, mark, kind, left)
-        probe = folder / f"{mark}.{os.getpid()}.tmp"
-        probe.touch()
-        probe.unlink()
+        try_writing(folder / mark)
     except OSError as error:
         raise OSError(
             f"cannot write in {folder}: {error.strerror}; choose another folder"

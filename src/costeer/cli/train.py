@@ -268,12 +268,11 @@ def _check_place(out: Path) -> None:
         ValueError: If the name is not of a file of weights.
         OSError: If it cannot be written.
     """
+    from costeer.base.files import try_writing
+
     if out.suffix != ".npz" or (out.exists() and not out.is_file()):
         raise ValueError(
             f"--out {out} cannot become a file of weights; give a file's name that "
             "ends in .npz"
         )
-    out.parent.mkdir(parents=True, exist_ok=True)
-    probe = out.with_name(f".{out.name}.probe")
-    probe.touch()
-    probe.unlink()
+    try_writing(out)

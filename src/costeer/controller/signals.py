@@ -146,8 +146,3 @@ class Assistance(NamedTuple):
     guidance: Guidance = Guidance()
     consistency: Consistency = Consistency()
     replan: Flag = False
-
-
-NO_ASSISTANCE = Assistance()
-"""No torque, and nothing known: a method gives
-`NO_ASSISTANCE._replace(applied_torque=torque)`, and so on for what else it computes."""

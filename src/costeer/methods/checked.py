@@ -223,7 +223,7 @@ def _check_assistance(name: str, given: Any) -> None:
     if not isinstance(given, Assistance):
         raise ValueError(
             f"{name} gives {_short(given)} as its assistance; give "
-            "NO_ASSISTANCE._replace(applied_torque=torque)"
+            "Assistance(applied_torque=torque)"
         )
     try:
         found = kinds_of(given)

@@ -77,7 +77,7 @@ class Method(NamedTuple, Generic[P, S]):
     Example:
         >>> from typing import NamedTuple
         >>> import costeer
-        >>> from costeer.controller.signals import NO_ASSISTANCE
+        >>> from costeer.controller.signals import Assistance
         >>> class Damping(NamedTuple):
         ...     gain: float = 0.5
         >>> class Memory(NamedTuple):
@@ -89,7 +89,7 @@ class Method(NamedTuple, Generic[P, S]):
         ... def step(parameters, state, measurement, request, dt):
         ...     torque = -parameters.gain * measurement.steering_wheel_rate
         ...     steps = Memory(steps=state.steps + 1.0)
-        ...     return steps, NO_ASSISTANCE._replace(applied_torque=torque)
+        ...     return steps, Assistance(applied_torque=torque)
         >>> damping = costeer.Method(
         ...     name="damping",
         ...     version="1",

@@ -15,6 +15,7 @@ import pyarrow.csv
 import pyarrow.ipc
 import pyarrow.parquet as pq
 
+from costeer.base.files import replacing
 from costeer.records.arrow import (
     METADATA_KEY,
     described,
@@ -54,7 +55,9 @@ CLOCK_KEY = b"clock"
 """Where a stream says when its trial began and until when it was driven, as JSON."""
 
 
-def write_record(path: str | os.PathLike[str], record: TrialRecord) -> None:
+def write_record(
+    path: str | os.PathLike[str], record: TrialRecord, durable: bool = False
+) -> None:
     """Write one trial as Parquet, whole or not at all.
 
     The columns are checked and put in the order of `COLUMNS`. NaN in the metadata
@@ -63,22 +66,22 @@ def write_record(path: str | os.PathLike[str], record: TrialRecord) -> None:
     Args:
         path: File to write or replace.
         record: The trial.
+        durable: Whether it is on the disk when this returns, as people's drives are.
 
     Raises:
         ValueError: If the record is not valid, see `checks.validated`.
         OSError: If the file cannot be written; then nothing is left of it.
     """
     declared = with_method_columns(record.method_columns)
-    _replace_with_table(Path(path), to_table(validated(record)), declared)
+    _replace_with_table(Path(path), to_table(validated(record)), declared, durable)
 
 
 def _replace_with_table(
-    path: Path, table: pa.Table, declared: Sequence[Column]
+    path: Path, table: pa.Table, declared: Sequence[Column], durable: bool
 ) -> None:
     floats = [column.name for column in declared if column.kind == "float64"]
     repetitive = [c.name for c in declared if c.kind in ("int8", "string")]
-    partial = path.with_name(path.name + ".tmp")
-    try:
+    with replacing(path, durable) as partial:
         # Byte-stream split and zstd give two thirds of the plain size and read back
         # faster than plain pages; dictionaries and statistics of floats only cost.
         pq.write_table(
@@ -91,12 +94,6 @@ def _replace_with_table(
             write_statistics=False,
             write_page_checksum=True,
         )
-        partial.replace(path)
-    except BaseException as error:
-        partial.unlink(missing_ok=True)
-        if isinstance(error, OSError) and error.errno and not error.filename:
-            raise OSError(error.errno, os.strerror(error.errno), str(path)) from error
-        raise
 
 
 def read_record(

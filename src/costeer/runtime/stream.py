@@ -19,6 +19,7 @@ import pyarrow.ipc
 import pyarrow.parquet as pq
 from numpy.typing import NDArray
 
+from costeer.base.files import replacing
 from costeer.records.arrow import record_schema, to_table
 from costeer.records.checks import validated
 from costeer.records.columns import Column, TrialRecord, with_method_columns
@@ -229,7 +230,7 @@ def finish(paths: RecordPaths, num_rows: int) -> bool:
     record = read_stream(paths.stream)
     faults = int(np.count_nonzero(record.columns["torque_fault"]))
     about = {**record.metadata, "torque_faults": faults}
-    write_record(paths.record, record._replace(metadata=about))
+    write_record(paths.record, record._replace(metadata=about), durable=True)
     _finish_trace(paths)
     paths.stream.unlink()
     paths.trace_stream.unlink(missing_ok=True)
@@ -242,6 +243,6 @@ def _finish_trace(paths: RecordPaths) -> None:
         stream = whole_batches(paths.trace_stream)
     except (ValueError, FileNotFoundError):
         return
-    partial = paths.trace.with_name(paths.trace.name + ".tmp")
-    pq.write_table(pa.Table.from_batches(stream.batches), partial, compression="zstd")
-    partial.replace(paths.trace)
+    with replacing(paths.trace, durable=True) as partial:
+        table = pa.Table.from_batches(stream.batches)
+        pq.write_table(table, partial, compression="zstd")

@@ -33,6 +33,7 @@ from costeer.study.trials import (
     finish_trial,
     resumed_trial,
     study_trials,
+    try_plug_ins,
 )
 
 WriteReport = Callable[[Path], object]
@@ -105,6 +106,7 @@ def run_study(
     jobs = default_jobs() if jobs is None else jobs
     check_count("jobs", jobs, 1, MOST_JOBS)
     configuration = study_configuration(settings)
+    try_plug_ins(settings, simulate)
     with opened_study(Path(out), configuration, study_command(settings)) as folder:
         work = partial(finish_trial, folder, settings, simulate)
         done = _all_done(folder, work, jobs, progress)

@@ -5,14 +5,19 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import NamedTuple
 
+from costeer.intention.predictors.registry import PREDICTORS
 from costeer.loop.scenario import TrialSetup
-from costeer.methods.conditions import CONDITION_NAMES
+from costeer.methods.conditions import CONDITION_NAMES, MANUAL
+from costeer.methods.registry import METHODS
 from costeer.records.record import TrialRecord, read_record, write_record
 from costeer.study.configuration import StudySettings, trial_setup
 from costeer.study.design import Trial, plan_trials
 from costeer.study.folder import StudyFolder, record_path
 from costeer.study.measures import lane_change_rows, trial_row, trigger_rows
 from costeer.study.trial_tables import TrialRows
+
+LENGTH_OF_TRY = 150.0
+"""Of the drive that tries a plug-in: 4 s and more, a whole window of signals [m]."""
 
 HASH_FIELD = "study_hash"
 """Metadata field of a record that binds it to the study's configuration."""
@@ -39,6 +44,24 @@ def study_trials(settings: StudySettings) -> list[Trial]:
     places = {name: place for place, name in enumerate(CONDITION_NAMES)}
     trials = plan_trials(settings.participants, settings.conditions)
     return sorted(trials, key=lambda each: (each.participant, places[each.condition]))
+
+
+def try_plug_ins(settings: StudySettings, simulate: Simulate) -> None:
+    """Drive a few metres with what comes from outside costeer.
+
+    What does not run is so refused before the study has a folder; what does run is
+    compiled by then.
+
+    Raises:
+        ValueError: If it does not run.
+    """
+    chosen = (settings.method, METHODS), (settings.predictor, PREDICTORS)
+    ours = all(isinstance(one, str) and one in known for one, known in chosen)
+    first = next((c for c in settings.conditions if c != MANUAL), None)
+    if ours or first is None:
+        return
+    setup = trial_setup(settings, Trial(1, first, 1))
+    simulate(setup._replace(length=LENGTH_OF_TRY))
 
 
 def finish_trial(

@@ -68,12 +68,20 @@ def chosen_predictor(
     if not isinstance(wanted, str):
         return _own(wanted)
     if weights is not None and weights.endswith(".onnx"):
-        return _onnx(Path(weights))
-    return _named(wanted, weights)
+        return _onnx(Path(weights), _stamp(weights))
+    return _named(wanted, weights, _stamp(weights))
+
+
+def _stamp(file: str | None) -> tuple[int, int]:
+    """When a file was last written, and its size: one written anew is read anew."""
+    if file is None:
+        return 0, 0
+    about = Path(file).stat()
+    return about.st_mtime_ns, about.st_size
 
 
 @cache
-def _named(wanted: str, weights: str | None) -> ChosenPredictor:
+def _named(wanted: str, weights: str | None, _: tuple[int, int]) -> ChosenPredictor:
     path = None if weights is None else Path(weights)
     if wanted == OURS:
         network = load_weights(path)
@@ -132,7 +140,7 @@ def _own(wanted: Predictor | Judge) -> ChosenPredictor:
 
 
 @cache
-def _onnx(path: Path) -> ChosenPredictor:
+def _onnx(path: Path, _: tuple[int, int]) -> ChosenPredictor:
     """A network in an ONNX file, run by ONNX Runtime on one thread.
 
     Raises:
