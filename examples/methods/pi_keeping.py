@@ -15,6 +15,7 @@ class Gains(NamedTuple):
 
     Attributes:
         lane_width: Of the road [m]. Source: the trial.
+        strength: Factor on the torque [-]. Source: the condition.
         offset: Torque over the offset from the lane [N·m/m]. Source: assumed.
         yaw: Torque over the yaw angle [N·m/rad]. Source: assumed.
         integral: Torque over the integral of the offset [N·m/(m·s)]. Source: assumed.
@@ -22,6 +23,7 @@ class Gains(NamedTuple):
     """
 
     lane_width: Real
+    strength: Real
     offset: Real = 1.2
     yaw: Real = 25.0
     integral: Real = 0.2
@@ -50,7 +52,7 @@ def step(
     integral = xp.clip(state.integral + offset * dt, -2.0, 2.0)
     wanted = gains.offset * offset + gains.integral * integral
     torque = -wanted - gains.yaw * measured.yaw_angle
-    applied = xp.clip(torque, -gains.limit, gains.limit)
+    applied = gains.strength * xp.clip(torque, -gains.limit, gains.limit)
     return State(integral), Assistance(applied_torque=applied)
 
 
@@ -59,7 +61,9 @@ METHOD = Method(
     name="pi-keeping",
     version="1",
     source="an example of costeer",
-    parameters=lambda condition, car, column, road: Gains(road.lane_width),
+    parameters=lambda condition, car, column, road: Gains(
+        lane_width=road.lane_width, strength=condition.strength_factor
+    ),
     initial_state=begin,
     step=step,
     columns=(SUM._replace(mirrored="flipped"),),

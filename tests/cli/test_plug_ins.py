@@ -23,8 +23,17 @@ FILES = {
     "no_step.py": LAW.replace("    step=step,\n", "    step=None,\n"),
     "returns_int.py": LAW.replace("integral=0.0)", "integral=0)"),
     "int_gain.py": LAW.replace("yaw: Real = 25.0", "yaw: Real = 25"),
-    "one_value.py": LAW.replace("return State(integral), NO", "return NO"),
+    "one_value.py": LAW.replace("return State(integral), As", "return As"),
     "broken.py": LAW.replace("import array", "import arrray"),
+    "raises.py": LAW.replace(
+        "    applied =",
+        "    if measured.longitudinal_position > 20:\n"
+        "        raise ValueError('seen')\n    applied =",
+    ),
+    "picky.py": LAW.replace(
+        "strength=condition.strength_factor",
+        "strength=1 / (condition.name != 'strong-normal')",
+    ),
     "empty.py": "",
     "two.py": LAW + "\nOTHER = METHOD\nANOTHER = METHOD\ndel METHOD\n",
     "no_column.py": LAW.replace('"method.integral"', '"method.sum"'),
@@ -114,7 +123,17 @@ def files(tmp_path_factory: pytest.TempPathFactory) -> Path:
         ("--set guidance.lateral_error_gain=nan", "give a number from 0 to"),
         ("--set guidance.lateral_error_gain", "sets nothing; give NAME=NUMBER"),
         ("--set car.mass=1 --set car.mass=2", "car.mass is set twice"),
-        ("--set road.length=200", "road.length is decided by length"),
+        ("--set road.length=200", "road.length is set by --length"),
+        (
+            "--intention off --method raises.py",
+            "step of method 'pi-keeping' broke: ValueError: seen",
+        ),
+        ("--method picky.py", "parameters of method 'pi-keeping' broke: ZeroDivision"),
+        ("--intention off --predictor sure.py", "intention 'off' asks no predictor"),
+        ("--intention off --weights fits.onnx", "intention 'off' asks no predictor"),
+        ("--predictor gur --weights fits.onnx", "do not go together"),
+        ("--predictor sure.py --weights fits.onnx", "do not go together"),
+        ("--driver hands-off --driver-file d.yaml", "are two drivers; give one"),
     ],
 )
 def test_it_is_refused_in_one_line(

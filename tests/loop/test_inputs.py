@@ -39,6 +39,45 @@ def test_names_may_be_nested_or_dotted(tmp_path: Path) -> None:
     assert parse_assignments(["a.b = 3", "c=1e-3"]) == {"a.b": 3.0, "c": 0.001}
 
 
+@pytest.mark.parametrize(
+    ("text", "values"),
+    [
+        ("mass: 1e3", {"mass": 1000.0}),
+        ("a.b: 1.5e0\nc: -2", {"a.b": 1.5, "c": -2.0}),
+        ("flag: true", {"flag": True}),
+    ],
+)
+def test_numbers_are_read_as_people_write_them(
+    tmp_path: Path, text: str, values: dict[str, float]
+) -> None:
+    (tmp_path / "values.yaml").write_text(text)
+    assert read_values(tmp_path / "values.yaml") == values
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("mass: 1\nmass: 2", "mass stands twice"),
+        ("a.b: 1\na:\n  b: 2", "a.b is set twice"),
+        ("mass: 1:02", "mass is '1:02'; give a number"),
+        ("mass: 2020-13-45", "mass is '2020-13-45'; give a number"),
+        ("mass: [1]", "mass is .*; give a number"),
+        ("mass:", "mass is ''; give a number"),
+    ],
+)
+def test_what_is_no_number_is_named(tmp_path: Path, text: str, message: str) -> None:
+    (tmp_path / "values.yaml").write_text(text)
+    with pytest.raises(ValueError, match=rf"values\.yaml.*{message}"):
+        read_values(tmp_path / "values.yaml")
+
+
+@pytest.mark.parametrize("digits", [400, 5000])
+def test_a_number_of_many_digits_is_out_of_range(tmp_path: Path, digits: int) -> None:
+    (tmp_path / "car.yaml").write_text(f"mass: {'9' * digits}")
+    with pytest.raises(ValueError, match="mass is inf; give a number from"):
+        read_car(tmp_path / "car.yaml")
+
+
 def test_a_large_file_is_not_parsed(tmp_path: Path) -> None:
     (tmp_path / "v.yaml").write_text("a: 1\n" * 300_000, "utf-8")
     with pytest.raises(ValueError, match="larger than 1 MB"):

@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 import pytest
 
 from costeer.base.array import Real
+from costeer.base.described import described
 from costeer.base.packing import leaf_names, packed
 from costeer.controller import (
     actuation,
@@ -22,7 +23,7 @@ from costeer.controller import (
 from costeer.controller import step as controller
 from costeer.controller.signals import Request
 from costeer.controller.step import ControllerParameters
-from costeer.loop.overrides import OPTIONS, parameter_list
+from costeer.loop.overrides import OPTIONS, is_option, parameter_list
 from costeer.loop.parameters import LoopParameters
 from costeer.loop.scenario import TrialSetup, loop_parameters
 from costeer.loop.trial import simulate_trial
@@ -40,8 +41,10 @@ def leaves(parameters: LoopParameters[Any]) -> dict[str, float]:
 
 def others() -> dict[str, float]:
     """For each name another value that it may have."""
-    found = {}
-    for each in parameter_list(USUAL):
+    found = {"road.num_lanes": 3.0, "road.overtaking_side": 1.0}
+    for each in described(USUAL):
+        if each.name in found or is_option(each.name):
+            continue
         low, high = each.allowed
         shares = (1.0, 0.0) if isinstance(each.value, bool) else (0.25, 0.5)
         values = [low + share * (high - low) for share in shares]
@@ -53,7 +56,9 @@ OTHERS = others()
 
 
 def test_every_number_of_a_trial_can_be_set_or_is_an_option() -> None:
-    assert set(leaves(USUAL)) == OTHERS.keys() | OPTIONS.keys()
+    assert set(leaves(USUAL)) == OTHERS.keys() | set(filter(is_option, leaves(USUAL)))
+    decided = {name.removeprefix("controller.") for name in leaves(USUAL)}
+    assert OPTIONS.keys() <= decided
 
 
 @pytest.mark.parametrize("name", OTHERS)
@@ -91,6 +96,27 @@ def test_a_parameter_of_the_method_needs_no_prefix() -> None:
     assert short.controller.guidance.lateral_error_gain == 3.0
 
 
+def test_one_parameter_is_not_set_by_two_names() -> None:
+    gain = "guidance.lateral_error_gain"
+    twice = ((gain, 1.0), (f"controller.{gain}", 2.0))
+    with pytest.raises(ValueError, match="lateral_error_gain is set twice"):
+        loop_parameters(SETUP._replace(parameters=twice))
+
+
+def test_each_parameter_is_listed_under_a_name_of_its_own_that_sets_it() -> None:
+    heavy = loop_parameters(SETUP._replace(parameters=(("car.mass", 2000.0),)))
+    listed = {each.name: each for each in parameter_list(heavy, USUAL)}
+    assert len(listed) == len(parameter_list(heavy))
+    assert {"car.mass", "controller.car.mass", "guidance.lateral_error_gain"} <= {
+        *listed
+    }
+    assert "controller.road.length" not in listed
+    assert listed["car.mass"].value == 2000.0
+    assert listed["car.mass"].allowed.high == 150_000.0  # of the usual 1500 kg
+    for each in listed.values():
+        loop_parameters(SETUP._replace(parameters=((each.name, each.value),)))
+
+
 @pytest.mark.parametrize(
     ("name", "value", "told"),
     [
@@ -103,8 +129,14 @@ def test_a_parameter_of_the_method_needs_no_prefix() -> None:
         ("car.mass", 0.0, r"car\.mass is 0; give a number from 15 to 150000 kg"),
         ("car.mass", float("nan"), "car.mass is nan; give a number"),
         ("preview.look_ahead", 0.5, "is 0.5; give a number from 0 or 1"),
-        ("actuation.strength_factor", 0.5, "is decided by condition; set that one"),
-        ("road.length", 500.0, "is decided by length; set that one instead"),
+        ("actuation.strength_factor", 0.5, "is set by --condition .in Python cond"),
+        ("road.length", 500.0, r"is set by --length \(in Python length\); give that"),
+        ("assists", 0.0, "is set by --method"),
+        ("road.overtaking_side", 0.5, "is 0.5; give 1 for left or -1 for right"),
+        ("road.num_lanes", 1.0, "num_lanes is 1; give 2"),
+        ("car.friction", 0.0, "car.friction is 0; give a number from"),
+        ("car.mass", True, "car.mass is True; give a number"),
+        ("car.mass", "x", "car.mass is 'x'; give a number"),
     ],
 )
 def test_a_wrong_name_or_value_is_refused_with_the_way_out(

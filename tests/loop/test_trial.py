@@ -218,6 +218,38 @@ def test_another_setting_gives_another_configuration_hash() -> None:
     assert len(hashes) == 3
 
 
+def test_a_drive_that_leaves_the_numbers_is_refused_and_says_when() -> None:
+    wild = (("driver.tracking.wander_frequency", 100.0),)
+    setup = TrialSetup(length=1300.0, intention="scripted", parameters=wild)
+    with pytest.raises(ValueError, match=r"after \d+\.\d\d s .*wander_frequency=100"):
+        simulate_trial(setup)
+
+
+def test_a_predictor_that_is_not_asked_is_refused() -> None:
+    setup = TrialSetup(length=200.0, intention="scripted", predictor="crossing-time")
+    with pytest.raises(ValueError, match="'scripted' asks no predictor; leave"):
+        simulate_trial(setup, "python")
+
+
+@pytest.mark.parametrize(
+    ("field", "value"),
+    [
+        ("speed", "70km/h"),
+        ("length", None),
+        ("participant", 1.5),
+        ("participant", True),
+        ("participant", 0),
+        ("plant_steps", 8.5),
+        ("events", "no"),
+        ("car", 3),
+        ("driver", None),
+    ],
+)
+def test_what_is_of_another_kind_is_refused(field: str, value: object) -> None:
+    with pytest.raises(ValueError, match=rf"{field} .*(give|choose)"):
+        simulate_trial(TrialSetup(**{field: value}))  # type: ignore[arg-type]
+
+
 def test_a_setup_out_of_range_is_refused_before_anything_runs() -> None:
     with pytest.raises(ValueError, match="speed is 0; give a number from 12"):
         simulate_trial(STRONG._replace(speed=0))

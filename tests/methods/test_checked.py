@@ -47,7 +47,28 @@ def answering(answer: Any) -> AnyMethod:
         ),
         (rival(damping)._replace(parameters=lambda: Gain(1.0)), "parameters .* broke"),
         (rival(damping)._replace(columns=(COLUMN,)), "must begin with method_"),
-        (rival(damping)._replace(columns=[COLUMN]), "give columns and tunables as tup"),
+        (rival(damping)._replace(columns=[COLUMN]), r"columns .* \[.*; give a tuple"),
+        (rival(damping)._replace(tunables=None), "tunables .* are None; give a tuple"),
+        (
+            rival(damping)._replace(columns=("method_x",)),
+            "hold 'method_x'; give ",
+        ),
+        (rival(damping)._replace(tunables=("gain",)), "hold 'gain'; give costeer"),
+        (
+            rival(damping)._replace(tunables=(TUNABLE._replace(leaf="gain", low=2.0),)),
+            "'k' .* goes from 2.0 to 1.0; give the smaller",
+        ),
+        (
+            rival(damping)._replace(tunables=(TUNABLE._replace(leaf="gain"),) * 2),
+            "two tunables of one name",
+        ),
+        (rival(damping)._replace(version=3), "version .* is 3; give text"),
+        (rival(damping)._replace(assists="no"), "assists .* 'no'; give True or False"),
+        (rival(damping, gain=math.nan), "parameter gain .* is nan; give a number that"),
+        (
+            rival(lambda *_: (Memory(0.0), torque(2.0)))._replace(assists=False),
+            "asks for 2 N·m although assists is False",
+        ),
         (rival(damping)._replace(tunables=(TUNABLE,)), "'gian', which is none of gain"),
     ],
 )

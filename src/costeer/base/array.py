@@ -66,6 +66,8 @@ def _numpy_like(value: Any) -> Any:  # Any: this is where engines meet
     """Return the module that computes with `value`: NumPy or jax.numpy."""
     if isinstance(value, (np.ndarray, np.generic)):
         return np
+    if "jax.numpy" not in sys.modules:
+        raise TypeError(f"{value!r} is no number or array; give a float")
     return sys.modules["jax.numpy"]
 
 

@@ -93,7 +93,8 @@ def allowed(name: str, value: Real | bool, unit: str) -> Allowed:
     if _POSITIVE.search(name) and value > 0.0:
         return Allowed(value / _WIDE, value * _WIDE)
     if unit == "-" and value <= 1.0:
-        return Allowed(0.0, 1.0)
+        # Tyres without any friction hold no car on the road.
+        return Allowed(value / _WIDE if name == "friction" else 0.0, 1.0)
     return Allowed(0.0, _WIDE * max(1.0, value))
 
 
@@ -150,10 +151,13 @@ def checked_value(parameter: Described, value: Real) -> Real | bool:
         ValueError: If it is out of range or no number.
     """
     low, high = parameter.allowed
+    flag = isinstance(parameter.value, bool)
+    if not isinstance(value, int | float) or (isinstance(value, bool) and not flag):
+        raise ValueError(f"{parameter.name} is {value!r}; give a number")
     whole = not isinstance(parameter.value, int) or value in (0, 1)
     if not (math.isfinite(value) and low <= value <= high and whole):
         unit = "" if parameter.unit in ("-", "") else f" {parameter.unit}"
-        between = "or" if isinstance(parameter.value, bool) else "to"
+        between = "or" if flag else "to"
         raise ValueError(
             f"{parameter.name} is {value:g}; give a number from {low:g} {between} "
             f"{high:g}{unit}"

@@ -87,7 +87,8 @@ def print_table(
 ) -> None:
     """Print a table on stdout; a column whose cells are all numbers leans right.
 
-    A terminal folds it to its width; in a file or a pipe it is as wide as it needs.
+    A terminal folds it to its width, but for the first column, which people copy; in a
+    file or a pipe it is as wide as it needs.
     """
     from rich.console import Console
     from rich.measure import Measurement
@@ -99,7 +100,9 @@ def print_table(
         cells = [row[index] for row in rows]
         numeric = all(map(_is_number, cells))
         side: Literal["left", "right"] = "right" if numeric else "left"
-        table.add_column(Text(heading), justify=side, overflow="fold")
+        table.add_column(
+            Text(heading), justify=side, overflow="fold", no_wrap=index == 0
+        )
     for row in rows:
         table.add_row(*map(Text, row))
     console = Console()

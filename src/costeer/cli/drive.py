@@ -56,6 +56,7 @@ def drive(
         float,
         typer.Option(
             parser=parse_speed,
+            show_default="70km/h",
             metavar="SPEED",
             help="At the start [m/s], or with its unit: 70km/h.",
         ),

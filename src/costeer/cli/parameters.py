@@ -34,7 +34,7 @@ def parameters(
         costeer parameters --method my_method.py --json
     """
     from costeer.loop.inputs import car_of
-    from costeer.loop.overrides import METHOD, parameter_list
+    from costeer.loop.overrides import parameter_list
     from costeer.loop.scenario import TrialSetup, loop_parameters
 
     setup = TrialSetup(
@@ -43,10 +43,8 @@ def parameters(
         car=car_of(car),
         parameters=plug_ins.chosen_values(file, assignments),
     )
-    listed = [
-        each._replace(name=each.name.removeprefix(METHOD))
-        for each in parameter_list(loop_parameters(setup))
-    ]
+    usual = loop_parameters(setup._replace(parameters=()))
+    listed = parameter_list(loop_parameters(setup), usual)
     shown = _named(listed, words or [])
     if json:
         _print_json(shown)

@@ -31,6 +31,7 @@ def simulate(
         float,
         typer.Option(
             parser=parse_speed,
+            show_default="70km/h",
             metavar="SPEED",
             help="Suggested [m/s], or with its unit: 70km/h.",
         ),
@@ -77,6 +78,11 @@ def simulate(
     from costeer.loop.scenario import TrialSetup
     from costeer.methods.conditions import condition as condition_named
 
+    if driver_file is not None and driver != "virtual":
+        raise ValueError(
+            f"--driver {driver} and --driver-file {driver_file} are two drivers; give "
+            "one of them"
+        )
     setup = TrialSetup(
         participant=participant,
         seed=seed,

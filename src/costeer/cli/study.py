@@ -43,6 +43,7 @@ def study(
         float,
         typer.Option(
             parser=parse_speed,
+            show_default="70km/h",
             metavar="SPEED",
             help="Suggested [m/s], or with its unit: 70km/h.",
         ),

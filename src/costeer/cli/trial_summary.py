@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING
 from costeer.cli.console import print_table
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     import numpy as np
     from numpy.typing import NDArray
 
@@ -54,7 +56,14 @@ def summary_rows(record: TrialRecord, measures: Row) -> list[tuple[str, str, str
         ("triggers, false", number(measures["num_false_triggers"], 0), ""),
         ("crossings missed", number(measures["num_missed"], 0), ""),
         ("inconsistencies", number(measures["num_inconsistencies"], 0), ""),
+        *_faults(record.metadata),
     ]
+
+
+def _faults(about: Mapping[str, object]) -> list[tuple[str, str, str]]:
+    """A row for torques of the method that were no number or over the limit."""
+    faults = about.get("torque_faults")
+    return [("faults of the torque", f"{faults}", "steps")] if faults else []
 
 
 def change_cells(change: Row) -> list[str]:

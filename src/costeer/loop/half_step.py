@@ -150,7 +150,7 @@ def half_step(
     method_state, signals = rule.step(
         parameters.controller, state.method, measurement, request, DT
     )
-    limit = parameters.column.torque_limit
+    limit = xp.select(parameters.assists > 0.5, parameters.column.torque_limit, 0.0)
     sample = Sample(
         time=state.time,
         measurement=measurement,

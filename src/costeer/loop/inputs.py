@@ -28,6 +28,17 @@ _MOST = 1_000_000
 """Longest file that is read [bytes]."""
 
 
+class _Words(yaml.BaseLoader):
+    """YAML whose values are words: no date, no 1:02 that is 62; no name twice."""
+
+    def construct_mapping(self, node: yaml.MappingNode, deep: bool = False) -> Any:
+        names = [self.construct_object(key) for key, _ in node.value]
+        twice = [name for name in names if names.count(name) > 1]
+        if twice:
+            raise yaml.YAMLError(f"{twice[0]} stands twice; give it once")
+        return super().construct_mapping(node, deep)
+
+
 def read_values(path: Path) -> dict[str, Real]:
     """Numbers of a YAML file by dotted name.
 
@@ -38,7 +49,7 @@ def read_values(path: Path) -> dict[str, Real]:
     if path.stat().st_size > _MOST:
         raise ValueError(f"{path} is larger than 1 MB; give a file of parameters")
     try:
-        content = yaml.safe_load(path.read_text(encoding="utf-8"))
+        content = yaml.load(path.read_text(encoding="utf-8"), _Words)
     except (yaml.YAMLError, UnicodeDecodeError, RecursionError) as error:
         first = str(error).partition("\n")[0]
         raise ValueError(f"{path} is not YAML: {first}") from error
@@ -62,10 +73,24 @@ def _flatten(
         name = f"{prefix}{key}"
         if isinstance(value, Mapping) and name.count(".") < 8:
             _flatten(value, f"{name}.", values, path)
-        elif isinstance(value, int | float):
-            values[name] = float(value)
-        else:
-            raise ValueError(f"{path}: {name} is {value!r}; give a number")
+            continue
+        if name in values:
+            raise ValueError(f"{path}: {name} is set twice; set it once")
+        values[name] = _number(value, f"{path}: {name}")
+
+
+def _number(value: object, name: str) -> Real:
+    """The number, or flag, that a word of a file stands for.
+
+    Raises:
+        ValueError: If it is none.
+    """
+    if value in ("true", "false"):
+        return value == "true"
+    try:
+        return float(str(value))
+    except ValueError:
+        raise ValueError(f"{name} is {value!r}; give a number") from None
 
 
 def read_car(path: Path) -> CarParameters:

@@ -45,6 +45,8 @@ class LoopParameters(NamedTuple, Generic[P]):
         follows_plan: 1 if the system's lane changes begin and last as the driver plans
             this one, 0 if as the method says [-]. Source: assumed, for the pilot runs
             in which nobody disagrees.
+        assists: 1 if the method's torque may reach the motor, 0 if not [-]. Source:
+            the method.
         plant_steps: Plant steps in a control step [-]. Source: assumed, 8 make 480
             Hz.
     """
@@ -58,4 +60,5 @@ class LoopParameters(NamedTuple, Generic[P]):
     driver: DriverParameters = DriverParameters()
     start: StartParameters = StartParameters()
     follows_plan: Real = 0.0
+    assists: Real = 1.0
     plant_steps: int = 8

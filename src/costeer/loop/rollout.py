@@ -6,6 +6,7 @@ plain Python, and traced by JAX. Each method has machine code of its own.
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any, Protocol
 
 import numpy as np
@@ -30,6 +31,9 @@ from costeer.methods.interface import (
 )
 
 Rows = NDArray[np.float64]
+
+OURS = str(Path(__file__).parents[1])
+"""Folder of this package's own sources."""
 
 
 class Advance(Protocol):
@@ -100,6 +104,8 @@ def begun(
             count: int = trial(numbers, now, script, network, noise, rows)
         except errors.NumbaError as error:
             raise ValueError(cannot_compile(method, error)) from error
+        except Exception as error:  # whatever somebody else's code raises
+            raise ValueError(broke(method, error)) from error
         return count
 
     return advance
@@ -113,7 +119,10 @@ def _in_python(
 
     def advance(script: Script, noise: Rows, rows: Rows, keep: bool = True) -> int:
         nonlocal state
-        end, count = run(loop, parameters, state, script, network, noise, rows)
+        try:
+            end, count = run(loop, parameters, state, script, network, noise, rows)
+        except Exception as error:  # as above
+            raise ValueError(broke(method, error)) from error
         state = end if keep else state
         return count
 
@@ -153,12 +162,33 @@ def rollout(
     return rows[:count]
 
 
+_REASONS = (
+    "Untyped",
+    "Cannot",
+    "Unknown attribute",
+    "No implementation",
+    "Failed in",
+    "Use of unsupported",
+    "Invalid use",
+    "Unsupported",
+    "Type of variable",
+)
+"""How the lines begin in which Numba says what is wrong."""
+
+
 def cannot_compile(method: Method[P, S], error: Exception) -> str:
     """Why a method does not compile, in the lines that speak of its own code."""
-    told = [line.strip() for line in str(error).splitlines() if line.strip()]
-    reasons = [line for line in told if not line.startswith(("-", "File", "During"))]
+    told = [line.strip(" -\t") for line in str(error).splitlines()]
+    reasons = [line for line in told if line.startswith(_REASONS)]
+    places = [line for line in told if line.startswith("File") and OURS not in line]
+    said = list(dict.fromkeys([*reasons[:3], *places[:1]])) or told[:1]
     return (
-        f"method '{method.name}' cannot be compiled: {'; '.join(reasons[-4:])}. Each "
+        f"method '{method.name}' cannot be compiled: {'; '.join(said)}. Each "
         "of its functions, and each function they call, is marked @compiled; "
         "costeer.testing.check_method says more"
     )
+
+
+def broke(method: Method[P, S], error: Exception) -> str:
+    """What is said when a method's code raises in the middle of a trial."""
+    return f"step of method '{method.name}' broke: {type(error).__name__}: {error}"

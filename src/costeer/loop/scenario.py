@@ -126,12 +126,15 @@ _RANGES = {
     "speed": _Range(SLOWEST, FASTEST, "m/s"),
     "initial_offset": _Range(-1.5, 1.5, "m"),
     "prediction_horizon": _Range(0.1, 10.0, "s"),
-    "participant": _Range(0, 10_000_000, "-"),
+    "participant": _Range(1, 10_000_000, "-"),
     "seed": _Range(0, 2**63 - 1, "-"),
     "plant_steps": _Range(4, 64, "-"),
     "abandoned_share": _Range(0.0, 1.0, "-"),
     "wander_factor": _Range(0.0, 5.0, "-"),
 }
+
+
+_WHOLE = ("participant", "seed", "plant_steps")
 
 
 def check_setup(setup: TrialSetup) -> None:
@@ -142,19 +145,25 @@ def check_setup(setup: TrialSetup) -> None:
     """
     for name, allowed in _RANGES.items():
         value = getattr(setup, name)
+        kind = int if name in _WHOLE else (int, float)
+        if not isinstance(value, kind) or isinstance(value, bool):
+            what = "a whole number" if name in _WHOLE else "a number"
+            raise ValueError(f"{name} is {value!r}; give {what}")
         if not allowed.low <= value <= allowed.high:
             raise ValueError(
                 f"{name} is {value}; give a number from {allowed.low} to "
                 f"{allowed.high} {allowed.unit}".removesuffix(" -")
                 + (", or 70km/h on the command line" if name == "speed" else "")
             )
-    if isinstance(setup.car, str):
+    if not isinstance(setup.car, CarParameters):
         _check_choice("car", setup.car, tuple(CARS))
-    if isinstance(setup.driver, str):
+    if not isinstance(setup.driver, DriverParameters):
         _check_choice("driver", setup.driver, DRIVERS)
     _check_choice("intention", setup.intention, tuple(INTENTIONS))
     trial_condition(setup)
     method_named(setup.method)
+    if not isinstance(setup.events, bool):
+        raise ValueError(f"events is {setup.events!r}; give True or False")
     for time in setup.trigger_times:
         if not (math.isfinite(time) and time >= 0.0):
             raise ValueError(
@@ -223,6 +232,21 @@ def trial_driver(setup: TrialSetup) -> DriverParameters:
     )
 
 
+def _check_road(road: RoadParameters) -> None:
+    """Refuse a road on which nobody could change lanes.
+
+    Raises:
+        ValueError: Naming the number.
+    """
+    if road.overtaking_side not in (-1.0, 1.0):
+        raise ValueError(
+            f"road.overtaking_side is {road.overtaking_side:g}; give 1 for left or -1 "
+            "for right"
+        )
+    if road.num_lanes < 2.0 or road.num_lanes % 1.0 != 0.0:
+        raise ValueError(f"road.num_lanes is {road.num_lanes:g}; give 2 or more")
+
+
 def loop_parameters(setup: TrialSetup) -> LoopParameters[Any]:
     """All parameters of a trial.
 
@@ -250,6 +274,7 @@ def loop_parameters(setup: TrialSetup) -> LoopParameters[Any]:
     chosen, driven = method_named(setup.method), trial_method(setup)
     condition, values = trial_condition(setup), dict(setup.parameters)
     parameters = built(world, chosen, condition, values)
+    _check_road(parameters.road)
     if driven is chosen:
         return parameters
     # Manual driving has no parameters of a method from outside; the names are right.

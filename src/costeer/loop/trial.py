@@ -9,6 +9,7 @@ from importlib import metadata as distribution
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from costeer.base.array import Real
 from costeer.base.described import described
@@ -17,6 +18,7 @@ from costeer.intention.features import NUM_FEATURES, NUM_INPUTS, NUM_SCALED
 from costeer.intention.gru import NetworkWeights
 from costeer.intention.predictors.chosen import ChosenPredictor, chosen_predictor
 from costeer.intention.predictors.interface import Predictor
+from costeer.intention.predictors.registry import OURS
 from costeer.intention.wavefront import (
     WavefrontWeights,
     wavefront_weights,
@@ -40,7 +42,7 @@ from costeer.loop.tick import Network, Script
 from costeer.methods.interface import Method, method_sources
 from costeer.records.columns import TrialRecord, with_method_columns
 from costeer.records.metadata import HANDS_OFF, RECORD_VERSION, VIRTUAL
-from costeer.records.row import record_columns
+from costeer.records.row import ROW_COLUMNS, record_columns
 
 SLOWEST_SHARE = 0.5
 """A trial ends at the latest when a car at this share of its speed would arrive."""
@@ -88,6 +90,11 @@ def trial_predictor(setup: TrialSetup) -> ChosenPredictor | None:
         OSError: If its file cannot be read.
     """
     if setup.intention != "network":
+        if setup.predictor != OURS or setup.weights is not None:
+            raise ValueError(
+                f"intention '{setup.intention}' asks no predictor; leave predictor and "
+                "weights out, or choose intention network"
+            )
         return None
     return chosen_predictor(setup.predictor, setup.weights)
 
@@ -145,12 +152,30 @@ def simulate_trial(setup: TrialSetup, engine: str = "numba") -> TrialRecord:
         )
     else:
         rows = rollout(method, parameters, script, network, noise, engine)
+    _refuse_broken(setup, rows)
     columns = record_columns(
         rows, is_assisted(setup), with_method_columns(method.columns)
     )
     about = trial_metadata(setup, parameters, predictor)
     about["torque_faults"] = int(np.count_nonzero(columns["torque_fault"]))
     return TrialRecord(about, columns, method.columns)
+
+
+def _refuse_broken(setup: TrialSetup, rows: NDArray[np.float64]) -> None:
+    """Refuse a drive whose car has left the numbers.
+
+    Raises:
+        ValueError: Saying when, and what was set.
+    """
+    broken = ~np.isfinite(rows[:, ROW_COLUMNS.index("lateral_position")])
+    if broken.any():
+        when = rows[broken.argmax(), ROW_COLUMNS.index("time")]
+        told = ", ".join(f"{name}={value:g}" for name, value in setup.parameters)
+        raise ValueError(
+            f"after {when:.2f} s the car's position is no number: the loop cannot "
+            f"drive with these values ({told or 'none is set by name'}); set them "
+            "nearer to the usual ones"
+        )
 
 
 def trial_metadata(

@@ -6,6 +6,7 @@ its own words and not in those of a compiler.
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Callable
 from functools import cache
@@ -13,11 +14,13 @@ from typing import Any
 
 import numpy as np
 
+from costeer.base.described import value_at
 from costeer.controller.signals import Assistance, Request
-from costeer.methods.interface import Method, usual_parameters
-from costeer.plant.parameters import RoadParameters
+from costeer.methods.conditions import CONDITIONS, Condition
+from costeer.methods.interface import Method, Tunable
+from costeer.plant.parameters import CarParameters, ColumnParameters, RoadParameters
 from costeer.plant.road import adjacent_side, cruising_lane, lane_centre
-from costeer.records.columns import METHOD_PREFIX
+from costeer.records.columns import METHOD_PREFIX, Column
 from costeer.sensing.measurement import Measurement
 
 # Any, in this file: a method, its parameters and its state are of whoever made them.
@@ -36,13 +39,12 @@ def checked_method(method: Any) -> Method[Any, Any]:
         raise ValueError(
             f"{method!r} is no method; make one with costeer.Method(name=..., ...)"
         )
-    try:
-        hash(method)
-    except TypeError as error:
-        raise ValueError(
-            f"method {method.name!r} cannot be kept: {error}; give columns and "
-            "tunables as tuples"
-        ) from error
+    for part in ("columns", "tunables"):
+        given = getattr(method, part)
+        if not isinstance(given, tuple):
+            raise ValueError(
+                f"{part} of method {method.name!r} are {_short(given)}; give a tuple"
+            )
     return _checked(method)
 
 
@@ -60,7 +62,19 @@ def _checked(method: Method[Any, Any]) -> Method[Any, Any]:
                 f"method '{method.name}' has no {part} function; it is "
                 f"{getattr(method, part)!r}"
             )
+    for part in ("version", "source"):
+        if not isinstance(getattr(method, part), str):
+            raise ValueError(
+                f"{part} of method '{method.name}' is {_short(getattr(method, part))}; "
+                "give text"
+            )
+    if not isinstance(method.assists, bool):
+        raise ValueError(
+            f"assists of method '{method.name}' is {method.assists!r}; give True or "
+            "False"
+        )
     _check_columns(method)
+    _check_tunables(method)
     parameters = _checked_parameters(method)
     _check_step(method, parameters)
     return method
@@ -95,8 +109,8 @@ def _checked_parameters(method: Method[Any, Any]) -> Any:
     Raises:
         ValueError: Naming what cannot.
     """
-    given = _called(
-        method, "parameters", "condition, car, column, road", usual_parameters, method
+    given = parameters_of(
+        method, CONDITIONS[1], CarParameters(), ColumnParameters(), RoadParameters()
     )
     kinds = _checked_kinds(method, "parameters", given)
     whole = [name for name, kind in kinds.items() if kind == _WHOLE]
@@ -105,6 +119,13 @@ def _checked_parameters(method: Method[Any, Any]) -> Any:
             f"parameter {whole[0]} of method '{method.name}' is a whole number and "
             "could be set to nothing between; write it as 3.0 instead of 3"
         )
+    for name in kinds:
+        value = value_at(given, name)
+        if kinds[name] == "a number" and not math.isfinite(value):
+            raise ValueError(
+                f"parameter {name} of method '{method.name}' is {value}; give a number "
+                "that is finite"
+            )
     for tunable in method.tunables:
         if tunable.leaf not in kinds:
             raise ValueError(
@@ -138,6 +159,27 @@ def _checked_kinds(method: Method[Any, Any], what: str, given: Any) -> dict[str,
             f"{what} of method '{method.name}' are no named tuple of numbers, flags "
             f"and arrays of floats: {error}"
         ) from error
+
+
+def parameters_of(
+    method: Method[Any, Any],
+    condition: Condition,
+    car: CarParameters,
+    column: ColumnParameters,
+    road: RoadParameters,
+) -> Any:
+    """A method's parameters under a condition, for a car, column and road.
+
+    Raises:
+        ValueError: If its function breaks.
+    """
+    return _called(
+        method,
+        "parameters",
+        "condition, car, column, road",
+        method.parameters,
+        *(condition, car, column, road),
+    )
 
 
 def _called(
@@ -212,6 +254,12 @@ def _check_step(method: Method[Any, Any], parameters: Any) -> None:
                 "float as 0.0, and keep the shape of an array"
             )
     _check_assistance(name, answer[1])
+    torque = answer[1].applied_torque
+    if not method.assists and torque != 0.0:
+        raise ValueError(
+            f"{name} asks for {torque:g} N·m although assists is False; set assists to "
+            "True, or ask for none"
+        )
 
 
 def _check_assistance(name: str, given: Any) -> None:
@@ -242,8 +290,36 @@ def _check_columns(method: Method[Any, Any]) -> None:
         ValueError: Naming them.
     """
     for column in method.columns:
+        if not (isinstance(column, Column) and isinstance(column.name, str)):
+            raise ValueError(
+                f"columns of method '{method.name}' hold {_short(column)}; give "
+                "costeer.records.columns.Column(name, unit, kind, ...)"
+            )
         if not column.name.startswith(METHOD_PREFIX):
             raise ValueError(
                 f"column '{column.name}' of method '{method.name}' must begin with "
                 f"{METHOD_PREFIX}, so that it is not taken for one of costeer's own"
             )
+
+
+def _check_tunables(method: Method[Any, Any]) -> None:
+    """Refuse what nobody could move.
+
+    Raises:
+        ValueError: Naming it.
+    """
+    names = []
+    for tunable in method.tunables:
+        if not isinstance(tunable, Tunable):
+            raise ValueError(
+                f"tunables of method '{method.name}' hold {_short(tunable)}; give "
+                "costeer.methods.interface.Tunable(name, ...)"
+            )
+        if not -math.inf < tunable.low < tunable.high < math.inf:
+            raise ValueError(
+                f"tunable '{tunable.name}' of method '{method.name}' goes from "
+                f"{tunable.low} to {tunable.high}; give the smaller number first"
+            )
+        names.append(tunable.name)
+    if len(names) != len(set(names)):
+        raise ValueError(f"method '{method.name}' has two tunables of one name")

@@ -78,6 +78,10 @@ class Report(NamedTuple):
         return "\n".join([f"method {self.method}", *lines])
 
 
+ENGINES = ("python", "numba")
+"""That run a whole trial; JAX has a switch of its own."""
+
+
 def check_method(
     method: str | AnyMethod,
     *,
@@ -98,12 +102,17 @@ def check_method(
 
     Raises:
         MethodError: Naming the first property that it lacks, and the values.
-        ValueError: If there is no such method, or it cannot be called.
+        ValueError: If there is no such method, it cannot be called, or the engines
+            are none.
 
     Example:
         print(check_method("examples/methods/pi_keeping.py"))
     """
     found = method_named(method)
+    if isinstance(engines, str) or not set(engines) <= set(ENGINES) or not engines:
+        raise ValueError(f"engines are {engines!r}; give some of {ENGINES}")
+    if seed < 0:
+        raise ValueError(f"seed is {seed}; give 0 or more")
     columns = writer_of(found).columns[len(COLUMNS) :]
     names = ", ".join(column.name for column in columns) or "none of its own"
     moments = random_drive(np.random.default_rng(seed), RoadParameters())

@@ -65,11 +65,25 @@ def chosen_predictor(
         OSError: If the file cannot be read.
         ModuleNotFoundError: If an ONNX file is given and no runtime is installed.
     """
+    if weights is not None and wanted != OURS and not _takes_weights(wanted, weights):
+        raise ValueError(
+            f"predictor {wanted} and weights {weights} do not go together; leave one "
+            "of them out"
+        )
     if not isinstance(wanted, str):
         return _own(wanted)
     if weights is not None and weights.endswith(".onnx"):
         return _onnx(Path(weights), _stamp(weights))
     return _named(wanted, weights, _stamp(weights))
+
+
+def _takes_weights(wanted: str | Predictor | Judge, weights: str) -> bool:
+    """Whether a predictor reads its numbers from such a file."""
+    return (
+        isinstance(wanted, str)
+        and wanted in PREDICTORS
+        and not weights.endswith(".onnx")
+    )
 
 
 def _stamp(file: str | None) -> tuple[int, int]:
