@@ -154,4 +154,4 @@ def test_a_count_out_of_range_has_no_unit(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert simulate(tmp_path / "t.parquet", "--participant", "-3") == 2
-    assert capsys.readouterr().err.endswith("give a number from 0 to 10000000\n")
+    assert capsys.readouterr().err.endswith("give a number from 1 to 10000000\n")

@@ -36,9 +36,10 @@ from costeer.sensing.measurement import Measurement
 
 
 class SteadyParameters(NamedTuple):
-    """What the method always asks for [N·m]."""
+    """What the method always asks for [N·m], and a scale that may be too large."""
 
     torque: Real
+    scale: Real
 
 
 class SteadyState(NamedTuple):
@@ -61,7 +62,8 @@ def ask(
     dt: Real,
 ) -> tuple[SteadyState, Assistance]:
     """The same torque again; the gain tells how often it was asked before."""
-    asked = Assistance(applied_torque=parameters.torque, haptic_gain=state.num_steps)
+    torque = parameters.torque * (parameters.scale * parameters.scale)
+    asked = Assistance(applied_torque=torque, haptic_gain=state.num_steps)
     return SteadyState(num_steps=state.num_steps + 1.0), asked
 
 
@@ -74,7 +76,10 @@ def steady(torque: float) -> Method[SteadyParameters, SteadyState]:
         column: ColumnParameters,
         road: RoadParameters,
     ) -> SteadyParameters:
-        return SteadyParameters(torque=torque)
+        # Parameters are finite; 1e200 squared is not, and 0 times that is no number.
+        if math.isfinite(torque):
+            return SteadyParameters(torque=torque, scale=1.0)
+        return SteadyParameters(torque=-1.0 if torque < 0.0 else 0.0, scale=1e200)
 
     return Method(
         name="steady",

@@ -39,7 +39,7 @@ REFUSED = {
     "speed is nan; give a number from 12.0 to 31.0 m/s": {"speed": math.nan},
     "initial_offset is -2.0; give a number": {"initial_offset": -2.0},
     "prediction_horizon is 0.0; give": {"prediction_horizon": 0.0},
-    "participant is -1; give a number from 0": {"participant": -1},
+    "participant is -1; give a number from 1": {"participant": -1},
     "seed is -5; give a number from 0": {"seed": -5},
     "plant_steps is 2; give a number from 4 to 64": {"plant_steps": 2},
     "abandoned_share is 1.5; give a number from 0.0 to 1.0": {"abandoned_share": 1.5},

@@ -115,11 +115,13 @@ def test_a_torque_that_the_motor_cannot_give_is_contained_and_counted(
 ) -> None:
     found = example()
     usual = found.parameters
+    # The largest numbers: their product is none.
+    most = 1e308
     wild = found._replace(
         parameters=lambda *world: (
             usual(*world)._replace(offset=500.0, limit=limit)
             if limit == limit
-            else usual(*world)._replace(yaw=limit)
+            else usual(*world)._replace(offset=most, limit=most, strength=most)
         )
     )
     setup = TrialSetup(
