@@ -161,3 +161,15 @@ def test_the_same_command_gives_the_same_bytes(
     first = capsys.readouterr().out
     assert evaluate(*words) == 0
     assert capsys.readouterr().out == first
+
+
+def test_a_function_in_a_file_is_judged(
+    source: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file = tmp_path / "never.py"
+    file.write_text("def PREDICTOR(window):\n    return 0.0\n")
+    assert evaluate(source, "--predictor", file, "--json") == 0
+    found = json.loads(capsys.readouterr().out)
+    assert found["triggers"]["true_triggers"] == 0
+    assert evaluate(source, "--predictor", tmp_path / "none.py") == 2
+    assert "there is no file" in refusal(capsys)

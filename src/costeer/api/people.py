@@ -4,10 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Sequence
-from pathlib import Path
 from typing import Any
-
-import numpy as np
 
 from costeer.api.recordings import File, Recorded, as_record, by_name
 from costeer.api.trials import SUGGESTED_SPEED
@@ -15,12 +12,9 @@ from costeer.drivers.driver import DriverParameters
 from costeer.drivers.population import participant_driver
 from costeer.identification import fit
 from costeer.identification.fit import DriverFit
-from costeer.intention.features import IntentionSample
-from costeer.intention.predictors.chosen import Judge, chosen_predictor
-from costeer.intention.predictors.interface import Predictor, Probabilities
-from costeer.intention.predictors.registry import PREDICTORS
-from costeer.intention.predictors.registry import predictor as shipped
-from costeer.loop.outside import Verdicts
+from costeer.intention.predictors.chosen import Judge
+from costeer.intention.predictors.interface import Predictor
+from costeer.loop.outside import any_predictor
 from costeer.records.columns import TrialRecord
 from costeer.training import evaluate as training
 from costeer.training.recordings import recordings_of
@@ -126,28 +120,6 @@ def evaluate(
     asked = usual._replace(
         triggers=usual.triggers._replace(threshold=threshold), false_per_km=false_per_km
     )
-    return training.evaluate(_probabilities(predictor, weights), stretches, asked)
-
-
-def _probabilities(
-    wanted: File | Predictor | Judge, weights: File | None
-) -> Probabilities:
-    """A predictor of stretches; a function of windows is asked at each sample."""
     path = None if weights is None else os.fspath(weights)
-    if isinstance(wanted, Predictor):
-        return wanted.probabilities
-    if wanted in PREDICTORS and not (path or "").endswith(".onnx"):
-        return shipped(str(wanted), None if path is None else Path(path)).probabilities
-    chosen = chosen_predictor(by_name(wanted), path)
-    judge = chosen.judge
-    assert judge is not None  # only "gru" runs compiled, and it is shipped
-
-    def probabilities(
-        features: np.ndarray[Any, np.dtype[np.float64]], absent: tuple[str, ...]
-    ) -> np.ndarray[Any, np.dtype[np.float64]]:
-        verdicts = Verdicts(judge, chosen.name)
-        return np.array(
-            [verdicts.after(IntentionSample(*row)) for row in features.tolist()]
-        )
-
-    return probabilities
+    judged = any_predictor(by_name(predictor), path)
+    return training.evaluate(judged.probabilities, stretches, asked)

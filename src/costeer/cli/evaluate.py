@@ -68,7 +68,11 @@ def evaluate(
         Path | None, typer.Option(help="File of `costeer train`; else the shipped one.")
     ] = None,
     predictor: Annotated[
-        str, typer.Option(help="Which predictor to judge; gru is costeer's own.")
+        str,
+        typer.Option(
+            help="Which predictor to judge: gru is costeer's own; or module:object, "
+            "FILE.py."
+        ),
     ] = OURS,
     compare: Annotated[
         bool, typer.Option("--compare", help="Put all predictors beside it.")

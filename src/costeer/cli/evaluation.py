@@ -112,9 +112,11 @@ def check_chosen(chosen: Chosen) -> None:
         ValueError: Naming them and what is allowed.
     """
     from costeer.intention.features import FEATURES
-    from costeer.intention.predictors.registry import check_name
+    from costeer.intention.predictors.registry import PREDICTORS
+    from costeer.loop.outside import any_predictor
 
-    check_name(chosen.predictor)
+    if chosen.predictor not in PREDICTORS:
+        any_predictor(chosen.predictor)
     unknown = [name for name in chosen.without if name not in FEATURES]
     if unknown:
         raise ValueError(
@@ -160,8 +162,9 @@ def judge(
         ValueError: If it cannot judge the recordings.
         OSError: If its file cannot be read.
     """
-    from costeer.intention.predictors.registry import OURS, predictor
+    from costeer.intention.predictors.registry import OURS
     from costeer.intention.weights import load_weights
+    from costeer.loop.outside import any_predictor
     from costeer.training.assessment import assess, assessment_facts
     from costeer.training.recordings import lacking
 
@@ -169,7 +172,8 @@ def judge(
     lacks = missing_signals(seen)
     for line in variants_told(lacks, len(seen)):
         note(line)
-    judged = predictor(chosen.predictor, chosen.weights)
+    weights = None if chosen.weights is None else str(chosen.weights)
+    judged = any_predictor(chosen.predictor, weights)
     assessment = assess(judged, seen, _asked(chosen), parameters)
     facts = {"missing_signals": lacks, **assessment_facts(assessment)}
     if chosen.predictor != OURS:

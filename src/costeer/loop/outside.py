@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from collections import deque
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -20,7 +21,9 @@ from costeer.intention.features import (
     facing,
     valid_samples,
 )
-from costeer.intention.predictors.chosen import Judge
+from costeer.intention.predictors.chosen import Judge, chosen_predictor
+from costeer.intention.predictors.interface import Predictor
+from costeer.intention.predictors.registry import PREDICTORS, predictor
 from costeer.loop.rollout import Advance
 from costeer.loop.tick import INTENTION_GIVEN, Script
 from costeer.plant.parameters import RoadParameters
@@ -94,6 +97,37 @@ class Verdicts:
                 "between 0 and 1, NaN is no verdict"
             )
         return probability
+
+
+def any_predictor(
+    wanted: str | Predictor | Judge, weights: str | None = None
+) -> Predictor:
+    """A predictor of stretches, whatever it is that predicts.
+
+    Args:
+        wanted: As `chosen_predictor` takes it; a function of windows is asked at each
+            sample.
+        weights: File of its numbers.
+
+    Raises:
+        ValueError: If there is no such predictor, or its file does not fit.
+        OSError: If the file cannot be read.
+    """
+    if isinstance(wanted, Predictor):
+        return wanted
+    if wanted in PREDICTORS and not (weights or "").endswith(".onnx"):
+        return predictor(str(wanted), None if weights is None else Path(weights))
+    chosen = chosen_predictor(wanted, weights)
+    judge = chosen.judge
+    assert judge is not None  # only costeer's own runs compiled
+
+    def probabilities(features: Rows, absent: tuple[str, ...]) -> Rows:
+        verdicts = Verdicts(judge, chosen.name)
+        return np.array(
+            [verdicts.after(IntentionSample(*row)) for row in features.tolist()]
+        )
+
+    return Predictor(chosen.name, chosen.name, "", (), probabilities)
 
 
 def outside_rollout(
