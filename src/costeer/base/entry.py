@@ -23,8 +23,8 @@ from numba.core.caching import FunctionCache
 
 from costeer.base.notice import Compilations
 from costeer.base.packing import layout_of
-from costeer.base.plugins import is_interactive
-from costeer.base.plugins import source_hash as plugin_hash
+from costeer.base.sources import is_interactive
+from costeer.base.sources import source_hash as plugin_hash
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 _KEPT_FOLDERS = 3
