@@ -17,6 +17,7 @@ import pytest
 
 from costeer.base.plugins import load_object
 from costeer.base.sources import is_interactive, source_hash
+from costeer.plant.parameters import CARS
 
 
 class Gains(NamedTuple):
@@ -142,3 +143,16 @@ def test_a_function_without_a_file_is_known_by_what_it_uses() -> None:
     assert is_interactive((made(1.0, 1.0),))
     assert source_hash((made(1.0, 1.0),)) == source_hash((made(1.0, 2.0),))
     assert source_hash((made(1.0, 1.0),)) != source_hash((made(2.0, 1.0),))
+
+
+@pytest.mark.usefixtures("_clean")
+def test_a_table_of_costeer_is_no_number_of_a_plug_in(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    file = tmp_path / "table_law.py"
+    text = "from costeer.plant.parameters import CARS\n\ndef law(x):\n    return x\n"
+    file.write_text(text, "utf-8")
+    found = load_object(f"{file}:law", object, "")
+    before = source_hash((found,))
+    monkeypatch.setitem(CARS, "my-own", next(iter(CARS.values())))
+    assert source_hash((found,)) == before

@@ -23,7 +23,7 @@ FILES = {
     "no_step.py": LAW.replace("    step=step,\n", "    step=None,\n"),
     "returns_int.py": LAW.replace("integral=0.0)", "integral=0)"),
     "int_gain.py": LAW.replace("yaw: Real = 25.0", "yaw: Real = 25"),
-    "one_value.py": LAW.replace("return State(integral), NO", "return NO"),
+    "one_value.py": LAW.replace("return State(integral), Assist", "return Assist"),
     "broken.py": LAW.replace("import array", "import arrray"),
     "empty.py": "",
     "two.py": LAW + "\nOTHER = METHOD\nANOTHER = METHOD\ndel METHOD\n",

@@ -143,6 +143,18 @@ def _names_of(module: object) -> Names:
     return {} if found is None else vars(found)
 
 
+def _found(dotted: str) -> Any:
+    """What `from module import name` gives, if the module is there."""
+    module, _, name = dotted.rpartition(".")
+    return _names_of(module).get(name)
+
+
+def _is_among(value: Any, shared: list[Any]) -> bool:
+    """Whether a table was imported: it counts, and may change, where it was made."""
+    tables = isinstance(value, (list, dict, set))
+    return tables and any(value is each for each in shared)
+
+
 def _file(names: Names) -> Path:
     """File of a module; without a name if it has none."""
     return Path(names.get("__file__") or "")
@@ -263,10 +275,12 @@ class _Reader:
         for names in self.modules:  # grows
             source = _source(names)
             self.digest.update(_file(names).name.encode() + source)
-            for name in () if is_installed(_file(names)) else _imported(source):
+            imported = () if is_installed(_file(names)) else _imported(source)
+            for name in imported:
                 self.add_module(_names_of(name))
+            shared = [_found(name) for name in imported]
             for name, value in sorted(names.items()):
-                if not name.startswith(("__", "@")):
+                if not name.startswith(("__", "@")) and not _is_among(value, shared):
                     self.add_global(name, value)
 
     def add_global(self, name: str, value: Any) -> None:
