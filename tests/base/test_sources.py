@@ -101,6 +101,7 @@ def test_numbers_of_a_data_file_count(tmp_path: Path, where: str, kind: str) -> 
         ({"a": (1.0,)}, {"a": (2.0,)}),
         (Gains(1.0), Gains(2.0)),
         (np.zeros(2), np.ones(2)),
+        (np.ma.masked_equal([1.0, 2.0], 1.0), np.ma.masked_equal([1.0, 2.0], 2.0)),
         (Net([1.0]), Net([2.0])),
         (closure(1.0), closure(2.0)),
         (math.sin, math.cos),

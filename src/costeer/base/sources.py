@@ -103,14 +103,19 @@ def source_hash(functions: Iterable[Callable[..., Any]]) -> str:
 def check_unedited(module: ModuleType) -> None:
     """Refuse a module if a file of its own has changed since it was loaded.
 
+    Files of installed packages are not looked at: they are many, and stay as they are.
+
     Raises:
         ValueError: Naming the file.
     """
+    if is_installed(_file(vars(module))):
+        return
     reader = _Reader([vars(module)])
     reader.add_module(vars(module))
     reader.add_modules()
     for names in reader.modules:
-        if _file(names).is_file() and _file(names).read_bytes() != _source(names):
+        file = _file(names)
+        if file.is_file() and file.read_bytes() != _source(names):
             raise _edited(names)
 
 
@@ -327,7 +332,9 @@ class _Reader:
             self.digest.update(f"{type(value).__name__} {value!r};".encode())
         elif isinstance(value, np.ndarray) and value.dtype != object:
             self.digest.update(f"{value.dtype}{value.shape}".encode())
-            self.digest.update(value.tobytes())
+            self.digest.update(np.asarray(value).tobytes())
+            if isinstance(value, np.ma.MaskedArray):
+                self.digest.update(np.ma.getmaskarray(value).tobytes())
         elif id(value) not in self._within:
             self._within.add(id(value))
             self._add_whole(value, strict)
