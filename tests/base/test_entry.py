@@ -109,3 +109,69 @@ def test_without_a_writable_cache_the_temporary_folder_serves(
     (tmp_path / "file").touch()
     monkeypatch.setenv("COSTEER_CACHE", str(tmp_path / "file"))
     assert cache_folder.__wrapped__().parent.name == "costeer-numba"
+
+
+RIVAL = """
+from typing import NamedTuple
+from numba.extending import register_jitable
+
+class State(NamedTuple):
+    value: float
+
+@register_jitable
+def step(state):
+    return State(2.0 * state.value)
+
+LIKE = State(0.0)
+"""
+
+TWICE = """
+import sys
+from costeer.base.entry import entry_for
+from costeer.base.packing import packed, pack, unpack
+from costeer.base.plugins import load_object
+
+def compiled(place):
+    step = load_object(place + ":step", object, "")
+    like = load_object(place + ":LIKE", object, "")
+
+    def run(state):
+        pack(state, step(unpack(like, state)))
+
+    return entry_for((step,), run)
+
+def ran(place):
+    run, state = compiled(place), packed((10.0,))
+    run(state)
+    return f"{state[0]} {sum(run.stats.cache_hits.values())}"
+
+if __name__ == "__main__":
+    from twice import ran
+    print(",".join(ran(place) for place in sys.argv[1:]))
+"""
+
+
+@pytest.mark.parametrize("order", [1, -1])
+def test_one_file_under_two_names_has_machine_code_for_each(
+    tmp_path: Path, order: int
+) -> None:
+    rival = tmp_path / "damped.py"
+    rival.write_text(RIVAL)
+    (tmp_path / "twice.py").write_text(TWICE)
+    path = os.pathsep.join([str(tmp_path), *sys.path])
+    environment = os.environ | {
+        "PYTHONPATH": path,
+        "COSTEER_CACHE": str(tmp_path / "cache"),
+    }
+
+    def ran(*places: str) -> str:
+        command = [sys.executable, str(tmp_path / "twice.py"), *places]
+        done = subprocess.run(
+            command, env=environment, capture_output=True, text=True, check=True
+        )
+        return done.stdout.strip()
+
+    places = [str(rival), "damped"][::order]
+    assert [ran(place) for place in places] == ["20.0 0", "20.0 0"]
+    assert [ran(place) for place in places] == ["20.0 1", "20.0 1"]
+    assert ran(*places) == ran(*places[::-1]) == "20.0 1,20.0 1"

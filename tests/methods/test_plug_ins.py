@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import shutil
+from functools import partial
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 from costeer.loop.scenario import TrialSetup
 from costeer.loop.trial import simulate_trial
 from costeer.methods.ibhs import IBHS
+from costeer.methods.interface import method_sources
 from costeer.methods.registry import method_named
 from tests.methods.rivals import FILE, example
 
@@ -52,6 +55,32 @@ def test_two_installed_plug_ins_of_one_name_are_refused(
     monkeypatch.syspath_prepend(tmp_path)
     with pytest.raises(ValueError, match="'same': one:METHOD and two:METHOD; remove"):
         method_named("same")
+
+
+def test_an_installed_plug_in_of_a_name_of_costeer_is_refused(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    installed(tmp_path, "rivals", "[costeer.methods]\nibhs = rivals:METHOD\n")
+    assert method_named("ibhs") is IBHS
+    monkeypatch.syspath_prepend(tmp_path)
+    with pytest.raises(ValueError, match="'ibhs': costeer's own and rivals:METHOD"):
+        method_named("ibhs")
+    assert method_named("manual").name == "manual"
+
+
+def test_a_function_of_a_method_may_be_bound_to_data() -> None:
+    usual = example()
+    made = [
+        usual._replace(parameters=partial(_scaled, usual.parameters, gain))
+        for gain in (1.0, 1.0, 2.0)
+    ]
+    hashes = [method_sources(method_named(each)) for each in made]
+    assert hashes[0] == hashes[1] != hashes[2]
+
+
+def _scaled(usual: Any, gain: float, *world: Any) -> Any:  # Any: the example's own
+    given = usual(*world)
+    return given._replace(offset=gain * given.offset)
 
 
 def test_two_files_of_one_name_are_refused(tmp_path: Path) -> None:

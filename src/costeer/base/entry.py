@@ -23,8 +23,8 @@ from numba.core.caching import FunctionCache
 
 from costeer.base.notice import Compilations
 from costeer.base.packing import layout_of
-from costeer.base.plugins import is_interactive
-from costeer.base.plugins import source_hash as plugin_hash
+from costeer.base.sources import is_interactive
+from costeer.base.sources import source_hash as plugin_hash
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 _KEPT_FOLDERS = 3
@@ -122,14 +122,25 @@ class _ClosureCache(FunctionCache):
 
     Numba's own key would pickle the functions in the closure and never be found again.
     Only how its tuples lie packed is not said by sources: two methods may share a step.
+    Nor is the name of a module, which machine code holds: a file may be imported, too.
     """
 
     def _index_key(self, sig: Any, codegen: Any) -> Any:
         digest = hashlib.sha256(self._py_func.__code__.co_code)
         for cell in self._py_func.__closure__ or ():
-            if isinstance(cell.cell_contents, tuple):
-                digest.update(str(layout_of(cell.cell_contents)).encode())
+            held = cell.cell_contents
+            digest.update(str(_homes(held)).encode())
+            if isinstance(held, tuple):
+                digest.update(str(layout_of(held)).encode())
         return sig, codegen.magic_tuple(), digest.hexdigest()
+
+
+def _homes(value: Any) -> list[str]:  # Any: a function, or a tuple of numbers
+    """Names of the modules that a function, or the classes of nested tuples, are of."""
+    if not isinstance(value, tuple):
+        return [str(getattr(value, "__module__", None))]
+    inner = [home for part in value for home in _homes(part)]
+    return [type(value).__module__, *inner]
 
 
 def entry(function: Function) -> Function:

@@ -1,29 +1,29 @@
-"""Objects of other people: found by a name, loaded, and known by their sources.
+"""Objects of other people: found by a name and loaded.
 
 A plug-in is named by an entry point of an installed package, by `module:object`, or by
-a file, `rival.py` or `rival.py:object`. Its hash covers every file of its own that its
-functions reach, so that a record says what ran and machine code is never stale.
+a file, `rival.py` or `rival.py:object`. What its functions compute, so that a record
+says what ran and machine code is never stale, is told by `sources`.
 """
 
 from __future__ import annotations
 
-import hashlib
-import inspect
-import marshal
 import sys
-import sysconfig
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from importlib import import_module, util
-from importlib.metadata import entry_points
+from importlib.machinery import ModuleSpec, PathFinder, SourceFileLoader
+from importlib.metadata import EntryPoint, entry_points
 from pathlib import Path
 from types import ModuleType
-from typing import Any, cast
+from typing import Any
 
-import numpy as np
-from numba.core import serialize
+from costeer.base.sources import (
+    PlugInLoader,
+    check_unedited,
+    imported_names,
+    is_installed,
+)
 
-_PACKAGE = Path(__file__).parents[1]
-_LIBRARY = Path(sysconfig.get_paths()["stdlib"])
 _FILES = "costeer_plugin_"
 
 
@@ -35,14 +35,33 @@ def advertised(group: str) -> dict[str, str]:
     """
     found: dict[str, str] = {}
     for point in sorted(entry_points(group=group), key=lambda each: each.value):
-        if found.get(point.name, point.value) != point.value:
+        place = _place_of(point)
+        if found.get(point.name, place) != place:
             raise ValueError(
                 f"two plug-ins of {group} are called '{point.name}': "
-                f"{found[point.name]} and {point.value}; remove one of them, or name "
+                f"{found[point.name]} and {place}; remove one of them, or name "
                 "the one you mean as module:object"
             )
-        found[point.name] = point.value
+        found[point.name] = place
     return found
+
+
+def _place_of(point: EntryPoint) -> str:
+    """`module:object` of an entry point, without the extras that may follow."""
+    return point.value.partition("[")[0].replace(" ", "")
+
+
+def refuse_twin(group: str, name: str) -> None:
+    """Refuse a name of costeer's own that an installed package has taken as well.
+
+    Raises:
+        ValueError: Naming both.
+    """
+    for point in entry_points(group=group, name=name):
+        raise ValueError(
+            f"two plug-ins of {group} are called '{name}': costeer's own and "
+            f"{_place_of(point)}; remove that package, or have it offer another name"
+        )
 
 
 def is_place(name: str) -> bool:
@@ -102,135 +121,145 @@ def _only_name(module: ModuleType, kind: type, usual: str, place: str) -> str:
 
 
 def _module(name: str) -> ModuleType:
+    """The module of a name.
+
+    Raises:
+        ValueError: If there is none or it cannot be loaded.
+    """
+    if not all(part.isidentifier() for part in name.split(".")):
+        raise ValueError(
+            f"{name!r} is no name of a module; give module:object or a Python file"
+        )
     try:
-        return import_module(name)
-    except ModuleNotFoundError as error:
-        if error.name and name.startswith(error.name):
+        with _kept_sources():
+            module = import_module(name)
+    except _TwinError:
+        raise
+    except (Exception, SystemExit) as error:  # whatever somebody else's code raises
+        missing = error.name if isinstance(error, ModuleNotFoundError) else None
+        if missing and f"{name}.".startswith(f"{missing}."):
             raise ValueError(
-                f"there is no module '{error.name}' to import; install it, or give "
+                f"there is no module '{missing}' to import; install it, or give "
                 "the path of its file"
             ) from error
-        raise ValueError(f"{name} needs a module that is not there: {error}") from error
+        raise _broken(name, error) from error
+    check_unedited(module)
+    return module
+
+
+def _broken(place: object, error: BaseException) -> ValueError:
+    told = " ".join(str(error).split())
+    return ValueError(f"{place} cannot be loaded: {type(error).__name__}: {told}")
 
 
 def _file_module(path: Path) -> ModuleType:
     """The module of a file, under a name that is the same in every process.
 
     The folder of the file becomes importable, as that of a script is.
+
+    Raises:
+        ValueError: If it is not there, cannot be loaded, or was edited since it was.
     """
     if not path.is_file():
         raise ValueError(f"there is no file {path}; give the path of a Python file")
     path = path.resolve()
     name = _FILES + path.stem
-    there = sys.modules.get(name)
-    if there is not None:
-        if there.__file__ == str(path):
-            return there
+    module = sys.modules.get(name)
+    if module is None:
+        module = _loaded(name, path)
+    elif module.__file__ != str(path):
         raise ValueError(
-            f"two plug-ins are called {path.stem}: {there.__file__} and {path}; give "
+            f"two plug-ins are called {path.stem}: {module.__file__} and {path}; give "
             "one of the files another name"
         )
-    spec = util.spec_from_file_location(name, path)
-    if spec is None or spec.loader is None:
-        raise ValueError(f"{path} is no Python file")
-    if str(path.parent) not in sys.path:
-        sys.path.append(str(path.parent))
-    module = util.module_from_spec(spec)
-    sys.modules[name] = module
-    try:
-        spec.loader.exec_module(module)
-    except Exception as error:
-        del sys.modules[name]
-        raise ValueError(
-            f"{path} cannot be loaded: {type(error).__name__}: {error}"
-        ) from error
+    check_unedited(module)
     return module
 
 
-def is_interactive(functions: Iterable[Callable[..., Any]]) -> bool:
-    """Whether a function was written in a notebook or in the script that runs."""
-    return any(function.__module__ == "__main__" for function in functions)
+def _loaded(name: str, path: Path) -> ModuleType:
+    """`_file_module`, loaded.
 
-
-def sources_of(functions: Iterable[Callable[..., Any]]) -> list[Path]:
-    """Files outside costeer that functions come from or reach.
-
-    Of an installed plug-in all files of its own package count, of other installed
-    packages none.
+    Raises:
+        ValueError: If it cannot be.
     """
-    waiting = [sys.modules[function.__module__] for function in functions]
-    own = {module.__name__.partition(".")[0] for module in waiting}
-    found: set[Path] = set()
-    while waiting:
-        module = waiting.pop()
-        file = Path(getattr(module, "__file__", None) or "")
-        if file in found or not _is_own(module, file, own):
-            continue
-        found.add(file)
-        waiting += [m for m in map(_owner, vars(module).values()) if m is not None]
-    return sorted(found)
-
-
-def _owner(value: Any) -> ModuleType | None:  # Any: whatever a module holds
-    """The module that a value is, or was made in."""
-    if isinstance(value, ModuleType):
-        return value
-    return sys.modules.get(getattr(value, "__module__", None) or "")
-
-
-def _is_own(module: ModuleType, file: Path, own: set[str]) -> bool:
-    """Whether a file is a plug-in's own and not costeer's or a library's."""
-    if file.suffix != ".py" or file.is_relative_to(_PACKAGE):
-        return False
-    installed = "site-packages" in file.parts or "dist-packages" in file.parts
-    if installed or file.is_relative_to(_LIBRARY):
-        return module.__name__.partition(".")[0] in own
-    return True
-
-
-def source_hash(functions: Iterable[Callable[..., Any]]) -> str:
-    """Hash of all that decides what functions from outside costeer compute.
-
-    Their files, the numbers in their modules (they may have been read from elsewhere),
-    and what a function that was made by another one holds of it.
-    """
-    functions = tuple(functions)
-    digest = hashlib.sha256()
-    for file in sources_of(functions):
-        digest.update(file.name.encode())
-        digest.update(file.read_bytes())
-    for function in functions:
-        digest.update(_own_text(function))
-        for cell in function.__closure__ or ():
-            digest.update(_bytes_of(cell.cell_contents))
-        module = sys.modules[function.__module__]
-        if not Path(getattr(module, "__file__", None) or "").is_relative_to(_PACKAGE):
-            digest.update(_numbers(vars(module)))
-    return digest.hexdigest()[:16]
-
-
-def _own_text(function: Callable[..., Any]) -> bytes:
-    """A function as it was written, or as it was translated."""
+    if str(path.parent) not in sys.path:
+        sys.path.append(str(path.parent))
+    loader = _Loader(name, str(path))
+    spec = ModuleSpec(name, loader, origin=str(path))
+    spec.has_location = True
+    module = util.module_from_spec(spec)
+    sys.modules[name] = module
     try:
-        return inspect.getsource(function).encode()
-    except (OSError, TypeError):
-        return marshal.dumps(function.__code__)
+        with _kept_sources():
+            loader.exec_module(module)
+    except (Exception, SystemExit) as error:  # whatever somebody else's code raises
+        del sys.modules[name]
+        if isinstance(error, _TwinError):
+            raise
+        raise _broken(path, error) from error
+    return module
 
 
-def _numbers(names: Mapping[str, Any]) -> bytes:
-    """Numbers, texts and arrays among the values of a module."""
-    plain = (int, float, str, np.ndarray)
-    parts = [
-        name.encode() + _bytes_of(value)
-        for name, value in sorted(names.items())
-        if isinstance(value, plain) and not name.startswith("__")
-    ]
-    return b"".join(parts)
+class _TwinError(ValueError):
+    """Two files could be meant by an import."""
 
 
-def _bytes_of(value: Any) -> bytes:  # Any: whatever a function holds
-    if isinstance(value, np.ndarray):
-        return value.tobytes() + str(value.shape).encode()
-    if isinstance(value, (int, float, str, tuple)) or value is None:
-        return repr(value).encode()
-    return cast("bytes", cast("Any", serialize).dumps(value))  # Any: Numba's, untyped
+class _Loader(PlugInLoader):
+    """Loads a file that imports no file of its own folder that is hidden by another."""
+
+    def get_code(self, fullname: str) -> Any:
+        code = super().get_code(fullname)
+        if "." not in fullname and not self.is_package(fullname):
+            for top in {n.partition(".")[0] for n in imported_names(self.source)}:
+                _check_neighbour(Path(self.path), top)
+        return code
+
+
+def _check_neighbour(path: Path, name: str) -> None:
+    """Refuse an import that gives another file than the one that lies beside.
+
+    Raises:
+        _TwinError: Naming both.
+    """
+    beside = [path.parent / f"{name}.py", path.parent / name / "__init__.py"]
+    there = [file for file in beside if file.is_file()]
+    if not there:
+        return
+    spec = getattr(sys.modules.get(name), "__spec__", None) or PathFinder.find_spec(
+        name
+    )
+    found = Path((spec and spec.origin) or "what is built in").resolve()
+    if found not in there:
+        raise _TwinError(
+            f"{path} imports {name}, but there are two of that name: {there[0]} and "
+            f"{found}, which Python takes; give {there[0].name} another name"
+        )
+
+
+class _Finder:
+    """Finds modules as Python does, and has their sources kept."""
+
+    @staticmethod
+    def find_spec(
+        name: str, path: Sequence[str] | None = None, target: ModuleType | None = None
+    ) -> ModuleSpec | None:
+        spec = PathFinder.find_spec(name, path, target)
+        loader = None if spec is None else spec.loader
+        if spec is None or type(loader) is not SourceFileLoader:
+            return spec
+        if not is_installed(Path(loader.path)):
+            spec.loader = _Loader(name, loader.path)
+        return spec
+
+
+@contextmanager
+def _kept_sources() -> Iterator[None]:
+    """Keep the bytes of what is imported, as they were when it was."""
+    finder: Any = _Finder()  # Any: typeshed wants what only old Pythons called
+    usual: list[Any] = sys.meta_path
+    before = usual.index(PathFinder) if PathFinder in usual else len(usual)
+    usual.insert(before, finder)
+    try:
+        yield
+    finally:
+        usual.remove(finder)

@@ -13,7 +13,7 @@ from typing import Any, Generic, NamedTuple, TypeVar
 
 from costeer.base.array import Real
 from costeer.base.packing import layout_of
-from costeer.base.plugins import source_hash
+from costeer.base.sources import source_hash
 from costeer.controller.signals import Assistance, Request
 from costeer.methods.conditions import CONDITIONS, Condition
 from costeer.plant.parameters import CarParameters, ColumnParameters, RoadParameters

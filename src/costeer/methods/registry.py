@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import difflib
-from functools import cache
 from typing import Any, TypeAlias
 
-from costeer.base.plugins import advertised, is_place, load_object
+from costeer.base.plugins import advertised, is_place, load_object, refuse_twin
 from costeer.methods.checked import checked_method
 from costeer.methods.ibhs import IBHS
 from costeer.methods.interface import Method
@@ -34,6 +33,7 @@ def method_named(method: str | AnyMethod) -> AnyMethod:
     if not isinstance(method, str):
         return _known(method)
     if method in METHODS:
+        refuse_twin(ENTRY_POINTS, method)
         return checked_method(METHODS[method])
     if is_place(method):
         return _loaded(method)
@@ -49,7 +49,6 @@ def method_named(method: str | AnyMethod) -> AnyMethod:
     )
 
 
-@cache
 def _loaded(place: str) -> AnyMethod:
     return _known(load_object(place, Method, "METHOD"))
 

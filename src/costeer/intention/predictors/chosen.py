@@ -8,14 +8,15 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Callable
-from functools import cache
+from functools import cache, partial
 from pathlib import Path
 from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
-from costeer.base.plugins import advertised, is_place, load_object, source_hash
+from costeer.base.plugins import advertised, is_place, load_object, refuse_twin
+from costeer.base.sources import plain, source_hash
 from costeer.intention.features import NUM_FEATURES, WINDOW_LENGTH
 from costeer.intention.gru import NetworkWeights
 from costeer.intention.predictors.interface import Predictor
@@ -74,7 +75,10 @@ def chosen_predictor(
         return _own(wanted)
     if weights is not None and weights.endswith(".onnx"):
         return _onnx(Path(weights), _stamp(weights))
-    return _named(wanted, weights, _stamp(weights))
+    if wanted in PREDICTORS:
+        refuse_twin(ENTRY_POINTS, wanted)
+        return _shipped(wanted, weights, _stamp(weights))
+    return _plugged_in(wanted, weights)
 
 
 def _takes_weights(wanted: str | Predictor | Judge, weights: str) -> bool:
@@ -95,14 +99,22 @@ def _stamp(file: str | None) -> tuple[int, int]:
 
 
 @cache
-def _named(wanted: str, weights: str | None, _: tuple[int, int]) -> ChosenPredictor:
+def _shipped(wanted: str, weights: str | None, _: tuple[int, int]) -> ChosenPredictor:
+    """A predictor of costeer's own, with the numbers of a file."""
     path = None if weights is None else Path(weights)
     if wanted == OURS:
         network = load_weights(path)
         return ChosenPredictor(OURS, network.hash, weights=network.weights)
-    if wanted in PREDICTORS:
-        found = predictor(wanted, path)
-        return ChosenPredictor(wanted, _file_hash(path), judge=_last_of(found))
+    found = predictor(wanted, path)
+    return ChosenPredictor(wanted, _file_hash(path), judge=_last_of(found))
+
+
+def _plugged_in(wanted: str, weights: str | None) -> ChosenPredictor:
+    """A predictor of an installed plug-in or of a place.
+
+    Raises:
+        ValueError: If there is none.
+    """
     place = wanted if is_place(wanted) else advertised(ENTRY_POINTS).get(wanted)
     if place is None:
         known = [*PREDICTORS, *advertised(ENTRY_POINTS)]
@@ -110,7 +122,7 @@ def _named(wanted: str, weights: str | None, _: tuple[int, int]) -> ChosenPredic
             f"there is no predictor {wanted!r}; known are {', '.join(known)}, or give "
             "yours as module:object or as a Python file"
         )
-    if path is not None:
+    if weights is not None:
         raise ValueError(
             f"predictor {wanted} reads no weights of costeer; leave --weights out"
         )
@@ -137,7 +149,7 @@ def _own(wanted: Predictor | Judge) -> ChosenPredictor:
     """What someone has written.
 
     Raises:
-        ValueError: If it cannot be called.
+        ValueError: If it cannot be called, or has no sources that a record could name.
     """
     if isinstance(wanted, Predictor):
         hashed = source_hash((wanted.probabilities,))
@@ -147,10 +159,14 @@ def _own(wanted: Predictor | Judge) -> ChosenPredictor:
             f"{wanted!r} is no predictor; give a function of a window of shape "
             f"({WINDOW_LENGTH}, {NUM_FEATURES}) that returns a probability"
         )
-    function: Any = wanted  # Any: a function, or an object that can be called
-    source = function if hasattr(function, "__code__") else type(function).__call__
-    name = getattr(function, "__name__", type(function).__name__)
-    return ChosenPredictor(name, source_hash((source,)), judge=wanted)
+    name = getattr(wanted, "__name__", None) or _called(wanted)
+    return ChosenPredictor(name, source_hash((wanted,)), judge=wanted)
+
+
+def _called(wanted: Judge) -> str:
+    """Name of what has none itself: of its class, or of what a partial calls."""
+    kind = type(wanted)
+    return plain(wanted)[0].__name__ if kind is partial else kind.__name__
 
 
 @cache
