@@ -21,7 +21,7 @@ from costeer.pages.style import (
     panels,
 )
 from costeer.study.figures.colours import condition_colour
-from costeer.study.material import StudyMaterial, conditions_driven
+from costeer.study.material import StudyMaterial, conditions_driven, why_without
 from costeer.study.quantities import half_width
 
 NAME = "detection"
@@ -167,11 +167,13 @@ def _short(name: str) -> str:
 def _caption(material: StudyMaterial) -> str:
     many = material.trials["participant"].nunique() > 1
     interval = ", with 95 % intervals" if many else ""
+    silent = why_without(material, "num_triggers")
+    why = f" Manual driving alone: {silent}." if silent else ""
     return (
         "(a) Share of the lane changes that the driver intended and that were "
         "announced at least so long before the crossing; missed ones count in the "
         "share. Dotted: the 3 s that the network is asked for. (b) False triggers and "
         "(c) missed lane changes per kilometre: means over participants"
         f"{interval}. Under assistance triggers are judged against the driver's own "
-        "intention, not against crossings that the guidance made."
+        f"intention, not against crossings that the guidance made.{why}"
     )

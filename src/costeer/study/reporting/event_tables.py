@@ -9,7 +9,7 @@ import pandas as pd
 from costeer.methods.conditions import MANUAL
 from costeer.pages.numerals import NOTHING, count, number, percent
 from costeer.pages.tables import Table
-from costeer.study.material import StudyMaterial, conditions_driven
+from costeer.study.material import StudyMaterial, conditions_driven, why_without
 from costeer.study.reporting.overview import tallies, total, weighted
 
 
@@ -119,7 +119,7 @@ def detection_table(material: StudyMaterial) -> Table:
         "within 3 to 5 s; false: else. Triggers within 1 s count once. Lead time [s] "
         "from the "
         "first trigger to the crossing, of lane changes that were announced: median, "
-        "below it the 10th and 90th percentile.",
+        f"below it the 10th and 90th percentile.{not_judged(material)}",
         header=(
             "Condition",
             *counted.values(),
@@ -131,8 +131,14 @@ def detection_table(material: StudyMaterial) -> Table:
     )
 
 
-def inconsistencies_table(material: StudyMaterial) -> Table:
-    """Return inconsistencies, their course and recovery per condition."""
+def not_judged(material: StudyMaterial) -> str:
+    """Say why nothing is counted under assistance; empty if something may be."""
+    silent = why_without(material, "num_triggers")
+    return f" Under assistance nothing is counted: {silent}." if silent else ""
+
+
+def inconsistencies_table(material: StudyMaterial) -> Table | None:
+    """Return inconsistencies and their course per condition; None if none is judged."""
     rows = []
     for name in conditions_driven(material):
         trials = material.trials[material.trials["condition"] == name]
@@ -153,6 +159,8 @@ def inconsistencies_table(material: StudyMaterial) -> Table:
                 number(weighted(known, "frozen_time"), 2),
             )
         )
+    if not rows:
+        return None
     return Table(
         name="inconsistencies",
         title="Inconsistencies between driver and guidance",

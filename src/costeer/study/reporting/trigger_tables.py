@@ -11,7 +11,7 @@ from costeer.study.definitions import DEFAULTS
 from costeer.study.detection import EARLY, FALSE, TRUE
 from costeer.study.material import StudyMaterial, conditions_driven
 from costeer.study.rates import poisson_interval
-from costeer.study.reporting.event_tables import spread_text
+from costeer.study.reporting.event_tables import not_judged, spread_text
 from costeer.study.trigger_episodes import MISSED
 
 EVENTS = {
@@ -58,7 +58,7 @@ def trigger_costs_table(material: StudyMaterial) -> Table | None:
     return Table(
         name="trigger-costs",
         title="What false and missed triggers cost",
-        note=_NOTE,
+        note=_NOTE + not_judged(material),
         header=(
             "Condition",
             "Event",
