@@ -113,7 +113,8 @@ def _notes(
     ignored: Iterable[str],
 ) -> list[str]:
     notes = [
-        f"{each.words}; if so, add --scale {each.column}={each.factor:.6g}"
+        f"{each.words}; if so, multiply it by {each.factor:.6g} (on the command line: "
+        f"--scale {each.column}={each.factor:.6g})"
         for each in suspicions(columns)
     ]
     if found.unevenness > EVEN_ENOUGH:

@@ -164,9 +164,20 @@ def _short(name: str) -> str:
     return f"{chosen.strength} {chosen.duration}".strip()
 
 
+def _reaches_below(material: StudyMaterial) -> bool:
+    """Whether the interval of a rate is longer than its bar."""
+    return any(
+        half_width(values) > values.mean()
+        for name in conditions_driven(material)
+        for column in ("false_triggers_per_km", "missed_per_km")
+        if (values := _rates(material, name, column)).size
+    )
+
+
 def _caption(material: StudyMaterial) -> str:
     many = material.trials["participant"].nunique() > 1
-    interval = ", with 95 % intervals" if many else ""
+    cut = ", cut at zero where they reach below" if _reaches_below(material) else ""
+    interval = f", with 95 % intervals{cut}" if many else ""
     silent = why_without(material, "num_triggers")
     why = f" Manual driving alone: {silent}." if silent else ""
     return (
