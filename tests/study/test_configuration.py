@@ -152,3 +152,11 @@ def test_the_same_numbers_of_another_kind_are_the_same_study() -> None:
     )
     exact = settings_with(length=4000.0, parameters=((gain, 2.0),))
     assert hash_of(whole) == hash_of(of_numpy) == hash_of(exact)
+
+
+def test_a_predictor_that_nobody_asks_has_its_name_in_the_hash_too() -> None:
+    def never(window: object) -> float:
+        return 0.0
+
+    about = study_configuration(settings_with(predictor=never))
+    assert about["predictor"] == "never"

@@ -194,19 +194,34 @@ def study(
         2
     """
     given = locals()
-    names = conditions.split(",") if isinstance(conditions, str) else conditions
     given |= {
-        "conditions": parse_conditions(",".join(names)),
+        "conditions": _conditions(conditions),
         "method": by_name(method),
         "car": by_name(car),
         "predictor": by_name(predictor),
-        "weights": "" if weights is None else os.fspath(weights),
+        "weights": "" if weights is None else by_name(weights),
         "drivers": _several(drivers, driver),
         "parameters": tuple((parameters or {}).items()),
     }
     settings = StudySettings(**{name: given[name] for name in StudySettings._fields})
     made = full_report if report else None
     return run_study(os.fspath(out), settings, jobs=jobs, report=made)
+
+
+def _conditions(given: str | Iterable[str]) -> tuple[str, ...]:
+    """Names of conditions.
+
+    Raises:
+        ValueError: If they are none.
+    """
+    if isinstance(given, str):
+        return parse_conditions(given)
+    names = list(given) if isinstance(given, Iterable) else [given]
+    if not all(isinstance(name, str) for name in names):
+        raise ValueError(
+            f"conditions is {given!r}; give names, as ['manual', 'weak-gentle']"
+        )
+    return parse_conditions(",".join(names))
 
 
 def _several(

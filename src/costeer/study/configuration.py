@@ -17,7 +17,7 @@ from costeer.base.described import described
 from costeer.base.entry import COMPILED_ROOMS
 from costeer.controller.step import ControllerParameters
 from costeer.drivers.driver import DriverParameters
-from costeer.intention.predictors.chosen import Judge
+from costeer.intention.predictors.chosen import Judge, chosen_predictor
 from costeer.intention.predictors.interface import Predictor
 from costeer.intention.predictors.registry import OURS
 from costeer.loop.inputs import car_of, read_driver
@@ -36,7 +36,13 @@ from costeer.methods.interface import method_sources
 from costeer.methods.registry import AnyMethod, method_named
 from costeer.plant.parameters import CarParameters
 from costeer.study.design import Trial, plan_trials
-from costeer.study.plain import plain_count, plain_number, plain_part, plain_values
+from costeer.study.plain import (
+    plain_count,
+    plain_number,
+    plain_part,
+    plain_text,
+    plain_values,
+)
 
 MOST_PARTICIPANTS = 9999
 LARGEST_SEED = 2**63 - 1
@@ -108,6 +114,7 @@ def _plain_settings(settings: StudySettings) -> StudySettings:
         seed=plain_count(settings.seed),
         length=plain_number("length", settings.length, "m"),
         speed=plain_number("speed", settings.speed, "m/s"),
+        weights=plain_text("weights", settings.weights),
         car=plain_part("car", settings.car, CarParameters),
         drivers=tuple(
             plain_part("driver", each, DriverParameters) for each in settings.drivers
@@ -200,6 +207,7 @@ def study_configuration(settings: StudySettings) -> dict[str, object]:
         "method": settings.method if isinstance(settings.method, str) else method.name,
         "conditions": list(settings.conditions),
         "car": _named(settings.car),
+        "predictor": _predictor_name(settings.predictor),
         "drivers": [_named(each) for each in settings.drivers],
         "parameters": dict(settings.parameters),
     }
@@ -218,20 +226,21 @@ def _named(part: str | CarParameters | DriverParameters) -> str:
     return part if isinstance(part, str) else OWN
 
 
+def _predictor_name(predictor: str | Predictor | Judge) -> str:
+    return predictor if isinstance(predictor, str) else chosen_predictor(predictor).name
+
+
 OWN = "own"
 """A car or driver given as an object."""
 
 
 def _plugged_in(settings: StudySettings, method: AnyMethod) -> dict[str, object]:
     """What came from outside costeer, so that its results can be told from others."""
-    own: dict[str, object] = {}
     setup = trial_setup(settings, Trial(1, CONDITION_NAMES[1], 1))
     predictor = trial_predictor(setup)
     drivers = [_driver_in(each) for each in settings.drivers]
-    if not isinstance(settings.predictor, str) and predictor is not None:
-        own["predictor"] = predictor.name
     car = setup.car
-    return own | {
+    return {
         "method_name": method.name,
         "method_version": method.version,
         "method_source_hash": method_sources(method),

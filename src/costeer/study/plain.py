@@ -27,6 +27,17 @@ def plain_count(value: Any) -> Any:  # Any: whatever stands for a whole number
     return int(value) if isinstance(value, np.integer) else value
 
 
+def plain_text(name: str, value: object) -> str:
+    """The name of a file as it is.
+
+    Raises:
+        ValueError: If it is no text.
+    """
+    if isinstance(value, str):
+        return value
+    raise ValueError(f"{name} is {value!r}; give the name of a file")
+
+
 def plain_part(name: str, value: object, kind: type[Record]) -> str | Record:
     """A name or file as it is; parameters with plain numbers.
 

@@ -139,26 +139,11 @@ def not_judged(material: StudyMaterial) -> str:
 
 def inconsistencies_table(material: StudyMaterial) -> Table | None:
     """Return inconsistencies and their course per condition; None if none is judged."""
-    rows = []
-    for name in conditions_driven(material):
-        trials = material.trials[material.trials["condition"] == name]
-        known = trials.dropna(subset=["num_inconsistencies"])
-        if known.empty:
-            continue
-        amount = float(known["num_inconsistencies"].sum())
-        changes = float(known["num_lane_changes"].sum())
-        rows.append(
-            (
-                name,
-                count(amount),
-                number(amount / changes if changes else math.nan, 3),
-                number(weighted(known, "inconsistency_duration"), 2),
-                number(float(known["inconsistency_gain_minimum"].min()), 3),
-                number(weighted(known, "recovery_time"), 2),
-                number(weighted(known, "verdict_flips"), 1),
-                number(weighted(known, "frozen_time"), 2),
-            )
-        )
+    rows = [
+        _inconsistency_row(name, known)
+        for name in conditions_driven(material)
+        if not (known := _with_verdict(material, name)).empty
+    ]
     if not rows:
         return None
     return Table(
@@ -179,6 +164,26 @@ def inconsistencies_table(material: StudyMaterial) -> Table | None:
             "Frozen [s]",
         ),
         rows=tuple(rows),
+    )
+
+
+def _with_verdict(material: StudyMaterial, name: str) -> pd.DataFrame:
+    trials = material.trials[material.trials["condition"] == name]
+    return trials.dropna(subset=["num_inconsistencies"])
+
+
+def _inconsistency_row(name: str, known: pd.DataFrame) -> tuple[str, ...]:
+    amount = float(known["num_inconsistencies"].sum())
+    changes = float(known["num_lane_changes"].sum())
+    return (
+        name,
+        count(amount),
+        number(amount / changes if changes else math.nan, 3),
+        number(weighted(known, "inconsistency_duration"), 2),
+        number(float(known["inconsistency_gain_minimum"].min()), 3),
+        number(weighted(known, "recovery_time"), 2),
+        number(weighted(known, "verdict_flips"), 1),
+        number(weighted(known, "frozen_time"), 2),
     )
 
 
