@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from costeer.methods.interface import Method
     from costeer.records.columns import Column
     from costeer.records.columns import TrialRecord as Record
+    from costeer.records.record import write_record
 
 moved.install()
 
@@ -51,6 +52,7 @@ __all__ = [
     "simulate",
     "steering_wheel_reversal_rate",
     "study",
+    "write_record",
 ]
 
 __version__ = version("costeer")
@@ -71,6 +73,7 @@ _PLACES = {
     "sdlp": "api.measuring:sdlp",
     "simulate": "api.trials:simulate",
     "steering_wheel_reversal_rate": "api.measuring:steering_wheel_reversal_rate",
+    "write_record": "records.record:write_record",
 }
 """Where each public name is."""
 

@@ -114,3 +114,10 @@ def test_angles_that_give_no_rate_are_refused(
 ) -> None:
     with pytest.raises(ValueError, match=told):
         costeer.steering_wheel_reversal_rate(time, angle)  # type: ignore[arg-type]  # that is the point
+
+
+def test_advice_serves_without_a_command_line_too() -> None:
+    with pytest.raises(ValueError, match=r"rename yours \(on the command line, for"):
+        costeer.measures({"t": TIME})
+    with pytest.raises(ValueError, match=r"multiply it by 0\.001 \(on the command"):
+        costeer.measures({"time": 1000.0 * TIME})

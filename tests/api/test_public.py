@@ -33,6 +33,7 @@ PROMISED = {
     "simulate",
     "steering_wheel_reversal_rate",
     "study",
+    "write_record",
 }
 """What docs/python.md and the issue that asked for it name."""
 

@@ -108,3 +108,8 @@ def test_a_record_is_read_as_it_was_written(
     np.testing.assert_array_equal(
         again.columns["yaw_angle"], record.columns["yaw_angle"]
     )
+
+
+def test_a_signal_of_words_is_there_but_cannot_be_drawn(record: costeer.Record) -> None:
+    with pytest.raises(ValueError, match="signal 'mode' holds words and cannot be dr"):
+        record.plot(["mode"])

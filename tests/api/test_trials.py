@@ -41,7 +41,7 @@ def test_everything_that_a_trial_setup_knows_can_be_given() -> None:
 
 def test_everything_that_a_study_is_set_to_can_be_given() -> None:
     given = arguments(study)
-    assert set(given) == {*StudySettings._fields, "out", "jobs", "report"}
+    assert set(given) == {*StudySettings._fields, "driver", "out", "jobs", "report"}
     for name, usual in StudySettings._field_defaults.items():
         if name not in {"parameters", "weights"}:
             assert given[name] == usual, name
@@ -137,6 +137,56 @@ def test_a_study_gives_the_tables_of_the_deep_call(tmp_path: Path) -> None:
     assert (done.num_trials, done.num_resumed) == (2, 0)
     tables = [tmp_path / each / "trials.csv" for each in "ab"]
     assert tables[0].read_bytes() == tables[1].read_bytes()
+
+
+def test_a_study_takes_cars_drivers_and_predictors_as_objects(tmp_path: Path) -> None:
+    def never(window: np.ndarray[Any, Any]) -> float:
+        return 0.0
+
+    given: dict[str, Any] = {
+        "participants": np.int64(1),
+        "conditions": "manual,weak-gentle",
+        "length": np.float64(300),
+        "parameters": {"guidance.lateral_error_gain": np.float64(2)},
+        "car": CARS["compact"],
+        "driver": costeer.population(1)[0],
+        "predictor": never,
+        "report": False,
+    }
+    assert costeer.study(tmp_path / "a", **given).num_resumed == 0
+    again = given | {"length": 300, "parameters": {"guidance.lateral_error_gain": 2}}
+    assert costeer.study(tmp_path / "a", **again).num_resumed == 2
+    other = given | {"car": CARS["compact"]._replace(mass=1111)}
+    with pytest.raises(ValueError, match=r"car\.mass is .* there, 1111\.0 here"):
+        costeer.study(tmp_path / "a", **other)
+    text = (tmp_path / "a" / "study.yaml").read_text("utf-8")
+    assert "costeer.study(FOLDER, ...) in Python" in text
+    assert "predictor, driver 1 given as objects" in text
+    assert "predictor: never" in text
+
+
+@pytest.mark.parametrize(
+    ("given", "told"),
+    [
+        ({"speed": "70km/h"}, r"speed is '70km/h'; give a number \[m/s\]"),
+        ({"length": None}, r"length is None; give a number \[m\]"),
+        ({"car": 5}, "car is 5; give a name, a file NAME.yaml, or CarParameters"),
+        ({"drivers": 5}, "driver is 5; give a name, a file NAME.yaml, or Driver"),
+        ({"drivers": [CARS["large"]]}, "driver is CarParameters"),
+        ({"predictor": 5}, "5 is no predictor"),
+        ({"predictor": 5, "intention": "scripted"}, "5 is no predictor"),
+        ({"weights": 5}, "weights is 5; give the name of a file"),
+        ({"conditions": 5}, "conditions is 5; give names"),
+        ({"driver": "a.yaml", "drivers": ["b.yaml"]}, "give one of them"),
+        ({"parameters": {"guidance.lateral_error_gain": "2"}}, "give a number"),
+    ],
+)
+def test_a_setting_of_the_wrong_kind_is_one_line(
+    given: dict[str, Any], told: str, tmp_path: Path
+) -> None:
+    with pytest.raises(ValueError, match=told):
+        costeer.study(tmp_path / "a", participants=1, **given)
+    assert not (tmp_path / "a").exists()
 
 
 def test_a_study_refuses_a_misspelt_condition(tmp_path: Path) -> None:

@@ -21,10 +21,10 @@ def _fitted_once() -> Iterator[None]:
     """A recording that several tests show is fitted for the first of them alone."""
     known: dict[bytes, DriverFit] = {}
 
-    def fitted(record: TrialRecord) -> DriverFit:
+    def fitted(record: TrialRecord, car: str | None = None) -> DriverFit:
         key = b"".join(np.asarray(column) for column in record.columns.values())
         if key not in known:
-            known[key] = fit_driver(record)
+            known[key] = fit_driver(record, car)
         return known[key]
 
     with pytest.MonkeyPatch.context() as patch:
@@ -84,7 +84,7 @@ def test_a_csv_with_the_needed_columns_is_enough(
 
 def test_a_recording_that_cannot_be_fitted_is_named(tmp_path: Path) -> None:
     path = csv(tmp_path / "short.csv", cut(recorded(1), slice(0, 600)).columns)
-    with pytest.raises(ValueError, match=r"short\.csv: .* needs 60 s"):
+    with pytest.raises(ValueError, match=r"short\.csv: .* needs 60\.0 s"):
         show_fit(path, False, 1, None, None)
 
 

@@ -106,7 +106,7 @@ def test_a_fit_is_left_to_its_own_command(
     file, plot = tmp_path / "trial.parquet", tmp_path / "fit.svg"
     words = ("--fit", str(file), "--json", "--jobs", "3", "--plot", str(plot))
     assert drivers(*words) == 0
-    assert asked == [(file, True, 3, plot, None)]
+    assert asked == [(file, True, 3, plot, None, None)]
 
 
 def test_json_of_a_validation_has_no_nan(capsys: pytest.CaptureFixture[str]) -> None:

@@ -199,3 +199,11 @@ def test_a_shorter_recording_tells_less() -> None:
         wide, narrow = part[parameter.name], whole[parameter.name]
         # Less than half of the lane keeping: intervals are about 1.5 times as wide.
         assert wide.high - wide.low > 1.1 * (narrow.high - narrow.low)
+
+
+@pytest.mark.slow
+def test_a_short_recording_of_the_model_raises_no_false_alarm() -> None:
+    fit = fit_driver(recorded(1, 2000.0))
+    assert fit.whiteness < fit.white_limit
+    assert 0.06 < fit.white_limit < 0.07
+    assert fit_of(1).white_limit == WHITE

@@ -3,14 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 from costeer.identification.fit import fit_driver
 from costeer.identification.recording import NEEDED, drive_of
+from costeer.loop.trial import simulate_trial
+from costeer.plant.parameters import CARS, ColumnParameters
 from costeer.records.columns import TrialRecord
-from tests.identification.driving import cut, recorded, with_columns
+from tests.identification.driving import (
+    cut,
+    manual_setup,
+    recorded,
+    with_columns,
+)
 
 
 def table(record: TrialRecord) -> TrialRecord:
@@ -91,7 +99,9 @@ def test_an_unknown_car_is_refused() -> None:
 
 
 def test_too_little_lane_keeping_says_how_much_there_is_and_is_needed() -> None:
-    with pytest.raises(ValueError, match=r"has 43 s of lane keeping.*needs 60 s"):
+    with pytest.raises(
+        ValueError, match=r"has 43\.\d s of lane keeping.*needs 60\.0 s"
+    ):
         fit_driver(cut(recorded(1), slice(0, 3000)))
 
 
@@ -131,3 +141,26 @@ def test_without_events_a_near_leader_is_no_free_road() -> None:
     assert drive.free is not None
     np.testing.assert_array_equal(drive.free, ~near)
     assert near.any()
+
+
+def test_a_trial_record_says_with_which_car_and_column_it_was_driven() -> None:
+    own = (("car.mass", 2000.0), ("column.stiffness", 3.0))
+    setup = manual_setup(1, 200.0)._replace(car="large", parameters=own)
+    drive = drive_of(simulate_trial(setup))
+    assert drive.car == CARS["large"]._replace(mass=2000.0)
+    assert drive.column == ColumnParameters(stiffness=3.0)
+
+
+def test_an_own_car_is_that_of_the_record_and_can_be_named_for_a_table(
+    tmp_path: Path,
+) -> None:
+    estate = CARS["default"]._replace(mass=1720.0)
+    record = simulate_trial(manual_setup(1, 200.0)._replace(car=estate))
+    assert record.metadata["car"] == "own"
+    assert drive_of(record).car == estate
+    file = tmp_path / "estate.yaml"
+    file.write_text("mass: 1720")
+    assert drive_of(table(record)).car == CARS["default"]
+    assert drive_of(table(record), str(file)).car == estate
+    with pytest.raises(ValueError, match=r"car 'lorry' is not known.*NAME\.yaml"):
+        drive_of(table(record), "lorry")

@@ -147,3 +147,9 @@ def test_a_number_without_a_label_is_refused(code: float) -> None:
         ValueError, match=r"'method_word' is .* in row 1; its labels are"
     ):
         record_columns(np.array([[0.0], [code]]), True, [word])
+
+
+def test_a_number_that_does_not_fit_is_refused() -> None:
+    counter = Column("method_count", "-", "int8", "of something", "count")
+    with pytest.raises(ValueError, match=r"'method_count' is 305 in row 1; int8 holds"):
+        record_columns(np.array([[127.0], [305.0]]), True, [counter])

@@ -6,6 +6,7 @@ import math
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 from costeer.intention.gru import random_weights
@@ -129,3 +130,33 @@ def test_an_assisted_trial_takes_strength_and_duration_from_its_condition() -> N
     assert (setup.participant, setup.condition) == (3, "weak-rapid")
     assert trial_method(setup).name == "ibhs"
     assert trial_condition(setup)[-2:] == (0.4, 4.0)
+
+
+def test_a_file_that_was_written_anew_is_read_anew(tmp_path: Path) -> None:
+    car, driver = tmp_path / "car.yaml", tmp_path / "driver.yaml"
+    settings = settings_with(car=str(car), drivers=(str(driver),))
+    found = []
+    for mass, stiffness in ((1500, 11.0), (1720, 12.0)):
+        car.write_text(f"mass: {mass}")
+        driver.write_text(f"arm.stiffness: {stiffness}")
+        setup = trial_setup(settings, Trial(1, "manual", 1))
+        found.append((setup.car.mass, setup.driver.arm.stiffness))  # type: ignore[union-attr]  # both are of a file
+    assert found == [(1500.0, 11.0), (1720.0, 12.0)]
+
+
+def test_the_same_numbers_of_another_kind_are_the_same_study() -> None:
+    gain = "guidance.lateral_error_gain"
+    whole = settings_with(length=4000, parameters=((gain, 2),))
+    of_numpy = settings_with(
+        length=np.float64(4000), parameters=((gain, np.float32(2)),), seed=np.int64(1)
+    )
+    exact = settings_with(length=4000.0, parameters=((gain, 2.0),))
+    assert hash_of(whole) == hash_of(of_numpy) == hash_of(exact)
+
+
+def test_a_predictor_that_nobody_asks_has_its_name_in_the_hash_too() -> None:
+    def never(window: object) -> float:
+        return 0.0
+
+    about = study_configuration(settings_with(predictor=never))
+    assert about["predictor"] == "never"

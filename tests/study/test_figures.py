@@ -169,6 +169,30 @@ def test_every_bar_stands_on_zero_and_is_as_high_as_the_mean(
         assert panel.get_ylim()[0] == 0.0
 
 
+def test_an_interval_that_is_cut_at_zero_is_told(material: StudyMaterial) -> None:
+    (sdlp,) = (each for each in QUANTITIES if each.name == "sdlp")
+    cut = "Intervals that reach below zero are cut at zero."
+    rows = material.tests.summaries
+    below = [r._replace(low=-0.1, high=2 * r.mean + 0.1) for r in rows]
+    above = [r._replace(low=0.9 * r.mean, high=1.1 * r.mean) for r in rows]
+    for changed, told in ((below, True), (above, False)):
+        study = material._replace(
+            tests=material.tests._replace(summaries=tuple(changed))
+        )
+        with styled():
+            assert (cut in bars.draw(study, sdlp).caption) == told
+
+
+def test_a_rate_that_is_cut_at_zero_is_told(material: StudyMaterial) -> None:
+    for missed, told in ((np.arange(21) % 3 == 0, True), (np.ones(21), False)):
+        trials = material.trials.assign(
+            missed_per_km=missed.astype(float), false_triggers_per_km=1.0
+        ).sort_values("condition")
+        with styled():
+            caption = detection.draw(material._replace(trials=trials)).caption
+        assert ("cut at zero" in caption) == told
+
+
 def test_trajectories_meet_the_line_at_the_crossing(material: StudyMaterial) -> None:
     means = trajectories.mean_trajectories(material)
     assert set(means) == {(name, way) for name in CONDITION_NAMES for way in (-1, 1)}

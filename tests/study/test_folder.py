@@ -82,6 +82,58 @@ def test_other_sources_are_told_without_their_hashes(tmp_path: Path) -> None:
         begin(tmp_path, {**CONFIGURATION, "simulation_source": "b"})
 
 
+@pytest.mark.parametrize(
+    ("there", "here", "told"),
+    [
+        ({"predictor": "gru"}, {"predictor": "gap"}, "predictor is gru there, gap h"),
+        ({"weights": ""}, {"weights": "a.npz"}, "weights is  there, a.npz here"),
+        ({"drivers": []}, {"drivers": ["a.yaml"]}, "drivers is"),
+        (
+            {"parameters": {"guidance.gain": 2.0}},
+            {"parameters": {"guidance.gain": 3.0, "car.mass": 9.0}},
+            "car.mass is as usual there, 9.0 here; guidance.gain is 2.0 there, 3.0",
+        ),
+        ({"method_version": "1"}, {"method_version": "2"}, "has another version"),
+        (
+            {"method_source_hash": "a"},
+            {"method_source_hash": "b"},
+            "the code of the method was edited",
+        ),
+        (
+            {"intention_model_hash": "a"},
+            {"intention_model_hash": "b"},
+            "the predictor's code or numbers were changed",
+        ),
+        (
+            {"car_parameters": {"mass": 1.0, "width": 2.0}},
+            {"car_parameters": {"mass": 3.0, "width": 2.0}},
+            "another study: car.mass is 1.0 there, 3.0 here. Choose",
+        ),
+        (
+            {"driver_parameters": [{"arm.inertia": 1.0}, {"arm.inertia": 2.0}]},
+            {"driver_parameters": [{"arm.inertia": 1.0}, {"arm.inertia": 3.0}]},
+            "another study: driver 2: arm.inertia is 2.0 there, 3.0 here. Choose",
+        ),
+    ],
+)
+def test_what_a_user_chose_is_named_and_nothing_is_to_be_removed(
+    tmp_path: Path, there: dict[str, object], here: dict[str, object], told: str
+) -> None:
+    begin(tmp_path, {**CONFIGURATION, **there})
+    with pytest.raises(ValueError, match="holds another study") as refused:
+        begin(tmp_path, {**CONFIGURATION, **here})
+    assert told in str(refused.value)
+    assert "remove" not in str(refused.value)
+
+
+def test_code_that_changed_with_costeer_is_of_another_version(tmp_path: Path) -> None:
+    old = {"simulation_source": "a", "method_source_hash": "a"}
+    new = {"simulation_source": "b", "method_source_hash": "b"}
+    begin(tmp_path, {**CONFIGURATION, **old})
+    with pytest.raises(ValueError, match="holds a study of another version"):
+        begin(tmp_path, {**CONFIGURATION, **new})
+
+
 def test_a_study_of_another_version_asks_for_no_options(tmp_path: Path) -> None:
     begin(tmp_path, {**CONFIGURATION, "inconsistency_threshold": 0.036})
     with pytest.raises(

@@ -65,7 +65,7 @@ def test_whole_numbers_do_for_flags_and_lanes() -> None:
 @pytest.mark.parametrize(
     ("columns", "adaptation", "message"),
     [
-        ({"t": TIME}, Adaptation(), "no column 'time'.*--rename t=time; there are t"),
+        ({"t": TIME}, Adaptation(), "no column 'time'.*--rename t=time.; there are t"),
         (table(), Adaptation(renames={"t": "time"}), "--rename t: there is no such"),
         (table(a=TIME), Adaptation(renames={"a": "wheel"}), "'wheel' is no column of"),
         (table(), Adaptation(scales={"yaw_angle": 2.0}), "--scale yaw_angle: there is"),

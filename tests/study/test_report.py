@@ -232,3 +232,11 @@ def test_settings_versions_and_thresholds_are_in_the_page(
     assert {"costeer", "Python", "numpy"} <= {
         line[0] for line in tables(page)["versions"]
     }
+
+
+def test_it_says_where_single_conditions_are_compared(page: str) -> None:
+    assert "SDLP and reversal rate are compared by strength" in page
+
+
+def test_it_says_which_crossings_have_no_costs(page: str) -> None:
+    assert "A crossing that became no completed lane change has no costs" in page

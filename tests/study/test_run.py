@@ -11,6 +11,7 @@ from typing import Any
 import pytest
 
 from costeer.loop.scenario import TrialSetup
+from costeer.plant.parameters import CarParameters
 from costeer.records.record import TrialRecord, read_record, write_record
 from costeer.study import trials
 from costeer.study.configuration import StudySettings
@@ -23,7 +24,7 @@ from costeer.study.run import (
     study_command,
 )
 from costeer.study.trials import TrialDone
-from tests.methods.rivals import FILE
+from tests.methods.rivals import FILE, example
 from tests.study.fakes import (
     NUM_TRIALS,
     SMALL,
@@ -316,6 +317,29 @@ def test_the_command_in_the_folder_names_what_is_not_usual(
 ) -> None:
     settings = StudySettings(**changes)
     assert study_command(settings) == f"costeer study --out FOLDER{options}"
+
+
+def test_what_no_command_can_name_is_run_in_python() -> None:
+    assert study_command(StudySettings(method=example())) == (
+        "costeer.study(FOLDER, ...) in Python, with the same arguments; method "
+        "pi-keeping given as objects"
+    )
+
+
+def test_the_files_of_a_study_are_read_once(tmp_path: Path) -> None:
+    file = tmp_path / "car.yaml"
+    file.write_text("mass: 1500")
+    masses = set()
+
+    def simulate(setup: TrialSetup) -> TrialRecord:
+        assert isinstance(setup.car, CarParameters)
+        masses.add(setup.car.mass)
+        file.write_text("mass: 1720")
+        return made_up(setup)
+
+    settings = SMALL._replace(car=str(file))
+    run_study(tmp_path / "a", settings, jobs=1, report=None, simulate=simulate)
+    assert masses == {1500.0}
 
 
 def test_the_report_is_written_by_the_report_room(

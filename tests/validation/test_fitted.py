@@ -11,9 +11,17 @@ import pytest
 from costeer.drivers.driver import DriverParameters
 from costeer.identification.fit import DriverFit, fit_driver
 from costeer.identification.parameters import with_value
+from costeer.loop.scenario import loop_parameters
+from costeer.loop.trial import simulate_trial
+from costeer.plant.parameters import CARS, ColumnParameters
 from costeer.validation.fitted import Check, check_fit, same_trial
 from costeer.validation.fitted_figure import description, fit_svg
-from tests.identification.driving import recorded, true_driver, with_columns
+from tests.identification.driving import (
+    manual_setup,
+    recorded,
+    true_driver,
+    with_columns,
+)
 
 REPEATS = 8
 
@@ -61,10 +69,19 @@ def test_progress_counts_every_trial() -> None:
 
 def test_the_simulated_trial_is_that_of_the_recording() -> None:
     setup = same_trial(recorded(1))
-    assert setup.car == "default"
+    assert setup.car == CARS["default"]
     assert setup.events
     # The road was 8 km, of which the last step is beyond.
     assert setup.length == pytest.approx(8000.0, rel=2e-3)
+
+
+def test_the_simulated_car_and_column_are_those_of_the_record() -> None:
+    own = (("car.mass", 2000.0), ("column.stiffness", 3.0))
+    record = simulate_trial(manual_setup(1, 200.0)._replace(parameters=own))
+    parameters = loop_parameters(same_trial(record))
+    assert parameters.car.mass == 2000.0
+    assert parameters.column == ColumnParameters(stiffness=3.0)
+    assert same_trial(record, "large").car == CARS["large"]
 
 
 def test_leaders_are_known_from_events_or_gaps_or_lane_changes() -> None:

@@ -15,6 +15,7 @@ from costeer.identification.fit import DriverFit
 from costeer.intention.predictors.chosen import Judge
 from costeer.intention.predictors.interface import Predictor
 from costeer.loop.outside import any_predictor
+from costeer.plant.parameters import CarParameters
 from costeer.records.columns import TrialRecord
 from costeer.training import evaluate as training
 from costeer.training.recordings import recordings_of
@@ -45,16 +46,19 @@ def population(
     return [participant_driver(seed, each, speed) for each in range(1, number + 1)]
 
 
-def fit_driver(recording: Recorded, car: str | None = None) -> DriverFit:
+def fit_driver(
+    recording: Recorded, car: File | CarParameters | None = None
+) -> DriverFit:
     """The virtual driver who explains a recording of manual driving: docs/fit.md.
 
     Args:
         recording: A record, a data frame or a mapping of arrays, 60 rows a second.
-        car: Name of the car that was driven; None takes the record's, else the
-            default car.
+        car: That was driven: a name, parameters, or the file of one; None takes the
+            record's, else the default car.
 
     Raises:
         ValueError: If the recording is assisted, too short, or lacks something.
+        OSError: If the file of the car cannot be read.
 
     Example:
         >>> import costeer
@@ -62,7 +66,7 @@ def fit_driver(recording: Recorded, car: str | None = None) -> DriverFit:
         >>> fit = costeer.fit_driver(record)
         >>> again = costeer.simulate("manual", length=200, driver=fit.driver)
     """
-    return fit.fit_driver(as_record(recording), car)
+    return fit.fit_driver(as_record(recording), by_name(car))
 
 
 def evaluate(

@@ -38,11 +38,10 @@ def load_record(path: File) -> TrialRecord:
 
     Example:
         >>> import costeer
-        >>> from costeer.records.record import write_record
         >>> import tempfile
         >>> with tempfile.TemporaryDirectory() as folder:
         ...     file = folder + "/a.parquet"
-        ...     write_record(file, costeer.simulate("manual", length=200))
+        ...     costeer.write_record(file, costeer.simulate("manual", length=200))
         ...     record = costeer.load_record(file)
         >>> record.metadata["condition"]
         'manual'

@@ -9,7 +9,7 @@ import math
 import os
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 from costeer.api.recordings import File, by_name
 from costeer.drivers.driver import DriverParameters
@@ -30,6 +30,8 @@ from costeer.study.run import StudyOutcome, full_report, run_study
 
 if TYPE_CHECKING:
     from pandas import DataFrame
+
+Drivers: TypeAlias = File | DriverParameters
 
 SUGGESTED_SPEED = 70.0 / 3.6
 """About 70 km/h, Sec. III-B [m/s]."""
@@ -142,10 +144,11 @@ def study(
     intention: str = "network",
     length: float = 8000.0,
     speed: float = SUGGESTED_SPEED,
-    car: File = "default",
-    predictor: File = OURS,
+    car: File | CarParameters = "default",
+    predictor: File | Predictor | Judge = OURS,
     weights: File | None = None,
-    drivers: Sequence[File] = (),
+    drivers: Drivers | Sequence[Drivers] = (),
+    driver: Drivers | None = None,
     parameters: Mapping[str, float] | None = None,
     jobs: int | None = None,
     report: bool = True,
@@ -161,10 +164,13 @@ def study(
         intention: "network", or "scripted": the driver's decision is known.
         length: Of the course [m].
         speed: Suggested to the drivers [m/s].
-        car: Name of the car, or the file of one.
-        predictor: What reads the intention: its name or place.
+        car: "default", "compact", "large", parameters, or the file of one.
+        predictor: What reads the intention: its name or place, a `Predictor`, or a
+            function as for `simulate`; it is called in several threads.
         weights: File of its numbers, .npz or .onnx.
-        drivers: Files of drivers who take turns; none: the population.
+        drivers: A driver or the file of one, or several who take turns; none: the
+            population.
+        driver: One driver for all, by the name that `simulate` has for it.
         parameters: Dotted names and numbers; `costeer.parameters()` lists them.
         jobs: Trials at the same time; as many as processors if None. The results do
             not depend on it.
@@ -188,19 +194,50 @@ def study(
         2
     """
     given = locals()
-    names = conditions.split(",") if isinstance(conditions, str) else conditions
     given |= {
-        "conditions": parse_conditions(",".join(names)),
+        "conditions": _conditions(conditions),
         "method": by_name(method),
-        "car": os.fspath(car),
-        "predictor": os.fspath(predictor),
-        "weights": "" if weights is None else os.fspath(weights),
-        "drivers": tuple(os.fspath(file) for file in drivers),
+        "car": by_name(car),
+        "predictor": by_name(predictor),
+        "weights": "" if weights is None else by_name(weights),
+        "drivers": _several(drivers, driver),
         "parameters": tuple((parameters or {}).items()),
     }
     settings = StudySettings(**{name: given[name] for name in StudySettings._fields})
     made = full_report if report else None
     return run_study(os.fspath(out), settings, jobs=jobs, report=made)
+
+
+def _conditions(given: str | Iterable[str]) -> tuple[str, ...]:
+    """Names of conditions.
+
+    Raises:
+        ValueError: If they are none.
+    """
+    if isinstance(given, str):
+        return parse_conditions(given)
+    names = list(given) if isinstance(given, Iterable) else [given]
+    if not all(isinstance(name, str) for name in names):
+        raise ValueError(
+            f"conditions is {given!r}; give names, as ['manual', 'weak-gentle']"
+        )
+    return parse_conditions(",".join(names))
+
+
+def _several(
+    drivers: Drivers | Sequence[Drivers], driver: Drivers | None
+) -> tuple[str | DriverParameters, ...]:
+    """The drivers of a study, whether one or several were given.
+
+    Raises:
+        ValueError: If both are given.
+    """
+    if driver is not None and drivers:
+        raise ValueError("driver and drivers are given; give one of them")
+    given: Any = drivers if driver is None else driver  # Any: checked by the study
+    one = isinstance(given, str | os.PathLike | DriverParameters)
+    several = given if isinstance(given, Iterable) and not one else (given,)
+    return tuple(by_name(each) for each in several)
 
 
 def parameters(

@@ -18,7 +18,12 @@ if TYPE_CHECKING:
 
 
 def show_fit(
-    path: Path, as_json: bool, jobs: int | None, plot: Path | None, out: Path | None
+    path: Path,
+    as_json: bool,
+    jobs: int | None,
+    plot: Path | None,
+    out: Path | None,
+    car: str | None = None,
 ) -> None:
     """Fit a driver, check the fit by simulation, print and draw both.
 
@@ -28,6 +33,7 @@ def show_fit(
         jobs: Trials at a time; as many as processors if None.
         plot: Draw the estimates into this SVG, if given.
         out: Write the driver into this YAML file, if given.
+        car: That was driven, a name or a file; None takes the record's.
 
     Raises:
         ValueError: If the recording cannot be fitted.
@@ -43,12 +49,14 @@ def show_fit(
         raise ValueError(f"--out is {str(out)!r}; a driver is a file: give NAME.yaml")
     record = read_recording(path)
     try:
-        fit = fit_driver(record)
+        fit = fit_driver(record, car)
     except ValueError as error:
         raise ValueError(f"{path}: {error}") from error
     try:
         with progress("check by simulation", REPEATS) as advance:
-            checks = check_fit(record, fit, jobs or default_jobs(), advance=advance)
+            checks = check_fit(
+                record, fit, jobs or default_jobs(), advance=advance, car=car
+            )
     except ValueError as error:
         note(f"not checked: {error}")
         checks = []
@@ -130,14 +138,12 @@ def _print_tables(path: Path, fit: DriverFit, checks: list[Check]) -> None:
 
 def _notes(fit: DriverFit) -> list[str]:
     """What the reader should know before trusting the numbers."""
-    from costeer.identification.fit import WHITE
-
     lines = list(fit.notes)
-    if fit.whiteness > WHITE:
+    if fit.whiteness > fit.white_limit:
         lines.append(
-            f"prediction errors are correlated by up to {fit.whiteness:.2f}, those of "
-            f"a driver of this model by less than {WHITE:g}: the model does not "
-            "describe this driver well, and the intervals are too narrow"
+            f"prediction errors are correlated by up to {fit.whiteness:.3f}, those of "
+            f"a driver of this model by less than {fit.white_limit:.3f}: the model "
+            "does not describe this driver well, and the intervals are too narrow"
         )
     return lines
 
@@ -155,6 +161,7 @@ def _print_json(path: Path, fit: DriverFit, checks: list[Check]) -> None:
         "torque_noise": fit.torque_noise,
         "prediction_error": fit.prediction_error,
         "whiteness": fit.whiteness,
+        "white_limit": fit.white_limit,
         "estimates": [e._asdict() for e in fit.estimates],
         "not_identified": [n._asdict() for n in fit.not_identified],
         "checks": [_plain(c) for c in checks],

@@ -34,7 +34,7 @@ _UNNAMED = "costeer drivers without --validate, --threshold or --fit"
 _TASKS = {
     "--fit": _Task(
         "fits a driver to a recording",
-        frozenset({"--plot", "--out", "--jobs", "--json"}),
+        frozenset({"--car", "--plot", "--out", "--jobs", "--json"}),
     ),
     "--threshold": _Task(
         "drives the pilot drivers, who have a seed of their own",
@@ -78,6 +78,10 @@ def drivers(
     ] = None,
     fit: Annotated[
         Path | None, typer.Option(help="Fit a driver to the recording FILE.")
+    ] = None,
+    car: Annotated[
+        str | None,
+        typer.Option(help="With --fit: that was driven, a name or FILE.yaml."),
     ] = None,
     threshold: Annotated[
         bool, typer.Option("--threshold", help="Compute δ from pilot drivers.")
@@ -128,6 +132,7 @@ def drivers(
     given = {
         "--out": out,
         "--data": data,
+        "--car": car,
         "--plot": plot,
         "--participants": participants,
         "--seed": seed,
@@ -140,7 +145,7 @@ def drivers(
     if fit is not None:
         from costeer.cli.driver_fit import show_fit
 
-        show_fit(fit, json, jobs, plot, out)
+        show_fit(fit, json, jobs, plot, out, car)
         return
     from costeer.cli import driver_tables as tables
 

@@ -28,13 +28,17 @@ from costeer.identification.stretches import (
     lane_keeping,
     total_time,
 )
+from costeer.plant.parameters import CarParameters
 from costeer.records.columns import TrialRecord
 
 SHORTEST_FIT = 60.0
 """Lane keeping that a fit needs in all [s]: about ten swings of the wander."""
 WHITE = 0.05
-"""Largest autocorrelation of prediction errors that is chance [-]: of 15,000 samples
-one is within 0.016 in 95 of 100, the largest of 30 within 0.03."""
+"""Autocorrelation of prediction errors that is no matter however long a recording is
+[-]. Source: assumed, above what drivers of the model show in 8 km, 0.01 to 0.03."""
+_CHANCE = 4.0
+"""Of n independent errors an autocorrelation has the deviation 1/sqrt(n); the largest
+of 30 passes four of them in one recording of 500 [-]."""
 
 
 class DriverFit(NamedTuple):
@@ -50,6 +54,8 @@ class DriverFit(NamedTuple):
         prediction_error: Standard deviation of torque less its prediction [N·m].
         whiteness: Largest autocorrelation of the standardised prediction errors over
             lags up to 0.5 s; about 0.03 for a driver of the model [-].
+        white_limit: Above it that is no chance [-]: `WHITE`, or more where there are
+            few samples.
         notes: What the reader should know.
     """
 
@@ -61,17 +67,20 @@ class DriverFit(NamedTuple):
     torque_noise: float
     prediction_error: float
     whiteness: float
+    white_limit: float
     notes: tuple[str, ...]
 
 
-def fit_driver(record: TrialRecord, car: str | None = None) -> DriverFit:
+def fit_driver(
+    record: TrialRecord, car: str | CarParameters | None = None
+) -> DriverFit:
     """Fit a driver to a recording of manual driving.
 
     Args:
         record: Trial record, or a table with the columns of
             `identification.recording.NEEDED`.
-        car: Name of the car that was driven; None takes the record's, else the
-            default car.
+        car: That was driven: parameters, a name, or the file of one; None takes the
+            record's, else the default car.
 
     Raises:
         ValueError: If the recording is assisted, too short, sampled at another rate,
@@ -84,7 +93,7 @@ def fit_driver(record: TrialRecord, car: str | None = None) -> DriverFit:
     evidence = Evidence(drive, wheel_motion(drive, DriverParameters().arm), rows)
     steering = fit_steering(DriverParameters(), evidence)
     direct = direct_estimates(drive, found)
-    errors, whiteness = _residuals(steering.driver, steering.evidence)
+    errors, whiteness, white_limit = _residuals(steering.driver, steering.evidence)
     return DriverFit(
         driver=_with_direct(steering.driver, direct),
         estimates=(*steering.estimates, *_known(direct)),
@@ -94,6 +103,7 @@ def fit_driver(record: TrialRecord, car: str | None = None) -> DriverFit:
         torque_noise=steering.evidence.noise.deviation,
         prediction_error=errors,
         whiteness=whiteness,
+        white_limit=white_limit,
         notes=tuple(steering.notes),
     )
 
@@ -101,10 +111,11 @@ def fit_driver(record: TrialRecord, car: str | None = None) -> DriverFit:
 def _check_length(drive: Drive, rows: list[slice]) -> None:
     total = total_time(drive, rows)
     if total < SHORTEST_FIT:
+        told = math.floor(total * 10.0) / 10.0  # not rounded up to what is enough
         raise ValueError(
-            f"the recording has {total:.0f} s of lane keeping in stretches of "
+            f"the recording has {told:.1f} s of lane keeping in stretches of "
             f"{SHORTEST:g} s or more, {MARGIN_BEFORE:g} s and more away from lane "
-            f"changes; a fit needs {SHORTEST_FIT:g} s: give a longer recording"
+            f"changes; a fit needs {SHORTEST_FIT:.1f} s: give a longer recording"
         )
 
 
@@ -126,11 +137,14 @@ def _with_direct(driver: DriverParameters, direct: list[Estimate]) -> DriverPara
     return driver
 
 
-def _residuals(driver: DriverParameters, evidence: Evidence) -> tuple[float, float]:
-    """Deviation of the prediction errors [N·m], and how far they are from white."""
+def _residuals(
+    driver: DriverParameters, evidence: Evidence
+) -> tuple[float, float, float]:
+    """Deviation of the prediction errors [N·m], how far from white, and the limit."""
     found = predicted(driver, evidence)
     standard = found.errors / np.sqrt(found.variances)
     standard = (standard - standard.mean()) / standard.std()
     lags = range(1, round(0.5 / evidence.drive.dt) + 1)
     together = [abs(float(np.mean(standard[k:] * standard[:-k]))) for k in lags]
-    return float(found.errors.std()), max(together)
+    limit = max(WHITE, _CHANCE / math.sqrt(standard.size))
+    return float(found.errors.std()), max(together), limit

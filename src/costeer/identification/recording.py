@@ -6,18 +6,28 @@ columns in SI units.
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Mapping
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
+from costeer.base.described import with_values
 from costeer.identification.signals import Drive, Signal
+from costeer.loop.inputs import car_of
 from costeer.loop.parameters import DT
-from costeer.plant.parameters import CARS, ColumnParameters, RoadParameters
+from costeer.plant.parameters import (
+    CARS,
+    CarParameters,
+    ColumnParameters,
+    RoadParameters,
+)
 from costeer.plant.road import lane_at, lane_centre
 from costeer.records.checks import check_time, converted
 from costeer.records.columns import COLUMNS_BY_NAME, TrialRecord
 from costeer.records.plausible import suspicions
+
+Record = TypeVar("Record")
 
 NEEDED = (
     "time",
@@ -39,22 +49,24 @@ _LEAST_TORQUE = 1e-3
 _SLOWEST = 5.0
 
 
-def drive_of(record: TrialRecord, car: str | None = None) -> Drive:
+def drive_of(record: TrialRecord, car: str | CarParameters | None = None) -> Drive:
     """Take what a fit needs from a recording.
 
     Args:
         record: Trial record or table.
-        car: Name of the car that was driven; None takes the record's, else the
-            default car.
+        car: That was driven: parameters, a name, or the file of one; None takes the
+            record's, else the default car.
 
     Raises:
         ValueError: If the recording cannot be fitted; it names the value and the way
             out.
+        OSError: If the file of the car cannot be read.
     """
     signals = _needed(record)
     _check_manual(record)
     _check_sampling(signals["time"])
     _check_values(signals)
+    driven, column = vehicle_of(record, car)
     position = signals["lateral_position"]
     road = RoadParameters()
     # The equations take arrays as well as the floats they are annotated with.
@@ -70,8 +82,8 @@ def drive_of(record: TrialRecord, car: str | None = None) -> Drive:
         driver_torque=signals["driver_torque"],
         head_yaw=_head_yaw(record),
         free=_free(record),
-        car=CARS[_car_name(record, car)],
-        column=ColumnParameters(),
+        car=driven,
+        column=column,
         dt=DT,
     )
 
@@ -159,11 +171,37 @@ def _check_values(signals: dict[str, Signal]) -> None:
         )
 
 
-def _car_name(record: TrialRecord, car: str | None) -> str:
-    name = car or str(record.metadata.get("car") or "default")
-    if name not in CARS:
-        raise ValueError(f"car '{name}' is not known; choose one of {', '.join(CARS)}")
-    return name
+def vehicle_of(
+    record: TrialRecord, car: str | CarParameters | None = None
+) -> tuple[CarParameters, ColumnParameters]:
+    """Car and steering column of a recording.
+
+    Args:
+        record: A trial record says both with every parameter; of a table the column
+            is the usual one.
+        car: As in `drive_of`; it goes before the record's.
+
+    Raises:
+        ValueError: If there is no such car, or a parameter of the record is not known.
+        OSError: If the file of the car cannot be read.
+    """
+    told = record.metadata.get("configuration")
+    known = told if isinstance(told, Mapping) else {}
+    column = _recorded(ColumnParameters(), known.get("column"))
+    if car is None and "car" in known:
+        return _recorded(CarParameters(), known["car"]), column
+    if not isinstance(car, CarParameters):
+        name = car or str(record.metadata.get("car") or "default")
+        found = car_of(name)
+        car = CARS[found] if isinstance(found, str) else found
+    return car, column
+
+
+def _recorded(usual: Record, told: object) -> Record:
+    """Parameters as a record tells them; the usual ones where it does not."""
+    if not isinstance(told, Mapping):
+        return usual
+    return with_values(usual, told)
 
 
 def _head_yaw(record: TrialRecord) -> Signal | None:

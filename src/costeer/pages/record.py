@@ -145,6 +145,11 @@ def _chosen(columns: Columns, signals: Sequence[str] | None) -> list[str]:
         shown = [signals] if isinstance(signals, str) else list(signals)
     numbers = [n for n, values in columns.items() if values.dtype.kind in "fiub"]
     for name in shown:
+        if name in columns and name not in numbers:
+            raise ValueError(
+                f"signal {name!r} holds words and cannot be drawn; choose from "
+                f"{', '.join(numbers)}"
+            )
         if name not in numbers:
             near = difflib.get_close_matches(name, numbers, n=1)
             guess = f" (did you mean {near[0]}?)" if near else ""

@@ -257,7 +257,7 @@ COLUMNS: tuple[Column, ...] = (
         "consistent",
         "-",
         "bool",
-        "verdict of Table III; null in manual",
+        "verdict of Table III; null in manual, and without a haptic gain",
         "signals.consistency.consistent",
         nullable=True,
         assisted_only=True,

@@ -71,6 +71,15 @@ def write_record(
     Raises:
         ValueError: If the record is not valid, see `checks.validated`.
         OSError: If the file cannot be written; then nothing is left of it.
+
+    Example:
+        >>> import costeer, tempfile
+        >>> record = costeer.simulate("manual", length=200, intention="off")
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     costeer.write_record(folder + "/a.parquet", record)
+        ...     again = costeer.load_record(folder + "/a.parquet")
+        >>> len(again.columns["time"]) == len(record.columns["time"])
+        True
     """
     declared = with_method_columns(record.method_columns)
     _replace_with_table(Path(path), to_table(validated(record)), declared, durable)

@@ -99,12 +99,27 @@ def record_columns(
         assisted: Without assistance some columns are empty, `assisted_only`; for all
             rows, or one flag for each, shape `(time,)`.
         columns: Of the record, with those of the method.
+
+    Raises:
+        ValueError: If a number has no word, or does not fit in an int8.
     """
     helped = np.broadcast_to(assisted, len(rows))
+    places = {column.name: place for place, column in enumerate(columns)}
+    judged = helped
+    if _GAIN in places:
+        judged = helped & ~np.isnan(rows[:, places[_GAIN]])
     return {
-        column.name: _as_kind(column, np.ascontiguousarray(rows[:, place]), helped)
+        column.name: _as_kind(
+            column,
+            np.ascontiguousarray(rows[:, place]),
+            judged if column.name == _VERDICT else helped,
+        )
         for place, column in enumerate(columns)
     }
+
+
+_GAIN, _VERDICT = "haptic_gain", "consistent"
+"""A method without a haptic gain has no verdict either."""
 
 
 # Any: the element type differs from column to column.
@@ -119,8 +134,24 @@ def _as_kind(
     if column.kind == "float64":
         return values
     missing = np.isnan(values)
+    if column.kind == "int8":
+        _check_fits(column, values)
     whole = np.where(missing, 0.0, values).astype(column.kind)
     return np.ma.MaskedArray(whole, mask=missing) if column.nullable else whole
+
+
+def _check_fits(column: Column, values: NDArray[np.float64]) -> None:
+    """Refuse what a small whole number cannot hold.
+
+    Raises:
+        ValueError: Naming the first row at fault.
+    """
+    wrong = np.flatnonzero((values < -128.0) | (values > 127.0))
+    if wrong.size:
+        raise ValueError(
+            f"column {column.name!r} is {values[wrong[0]]:g} in row {wrong[0]}; int8 "
+            "holds -128 to 127: declare it as float64"
+        )
 
 
 def _labelled(column: Column, codes: NDArray[np.float64]) -> NDArray[np.str_]:

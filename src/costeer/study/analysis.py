@@ -11,7 +11,7 @@ from costeer.records.columns import TrialRecord
 from costeer.records.plausible import suspicions
 from costeer.records.record import read_recording
 from costeer.study.definitions import DEFAULTS, Columns, Measure, MeasureParameters
-from costeer.study.measures import Row, lane_change_rows, parameters_of
+from costeer.study.measures import Row, lane_change_rows, parameters_of, prepared
 from costeer.study.recordings import (
     AS_IT_IS,
     Adaptation,
@@ -19,7 +19,7 @@ from costeer.study.recordings import (
     stretches,
 )
 from costeer.study.sampling import EVEN_ENOUGH, Sampling, evened, sampling
-from costeer.study.trial_measures import prepare, trial_measures
+from costeer.study.trial_measures import trial_measures
 
 _TOO_SLOW = 6.0  # [Hz]: ten samples per period of the reversal rate's low-pass
 
@@ -86,7 +86,7 @@ def _analysed(
 ) -> Analysis:
     found = _sampling(part)
     even = recording._replace(columns=dict(evened(part.columns, found)))
-    measures = trial_measures(prepare(even.columns, parameters))
+    measures = trial_measures(prepared(even, parameters))
     return Analysis(
         source=source,
         sequence=part.name,
@@ -113,7 +113,8 @@ def _notes(
     ignored: Iterable[str],
 ) -> list[str]:
     notes = [
-        f"{each.words}; if so, add --scale {each.column}={each.factor:.6g}"
+        f"{each.words}; if so, multiply it by {each.factor:.6g} (on the command line: "
+        f"--scale {each.column}={each.factor:.6g})"
         for each in suspicions(columns)
     ]
     if found.unevenness > EVEN_ENOUGH:

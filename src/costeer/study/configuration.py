@@ -17,6 +17,8 @@ from costeer.base.described import described
 from costeer.base.entry import COMPILED_ROOMS
 from costeer.controller.step import ControllerParameters
 from costeer.drivers.driver import DriverParameters
+from costeer.intention.predictors.chosen import Judge, chosen_predictor
+from costeer.intention.predictors.interface import Predictor
 from costeer.intention.predictors.registry import OURS
 from costeer.loop.inputs import car_of, read_driver
 from costeer.loop.scenario import (
@@ -34,6 +36,13 @@ from costeer.methods.interface import method_sources
 from costeer.methods.registry import AnyMethod, method_named
 from costeer.plant.parameters import CarParameters
 from costeer.study.design import Trial, plan_trials
+from costeer.study.plain import (
+    plain_count,
+    plain_number,
+    plain_part,
+    plain_text,
+    plain_values,
+)
 
 MOST_PARTICIPANTS = 9999
 LARGEST_SEED = 2**63 - 1
@@ -50,10 +59,10 @@ class StudySettings(NamedTuple):
         intention: `network`, or `scripted`: the driver's decision is known.
         length: Of the course [m]. Source: Sec. III-B, 8 km.
         speed: Suggested to the driver [m/s]. Source: Sec. III-B, about 70 km/h.
-        car: Name of the car, or a YAML file of one.
-        predictor: What reads the intention: its name, or where it is.
+        car: Name of the car, a YAML file of one, or its parameters.
+        predictor: What reads the intention: its name, where it is, or itself.
         weights: File of its numbers; empty for those that ship.
-        drivers: Files of drivers, who take turns; none: the population.
+        drivers: Drivers or their files, who take turns; none: the population.
         parameters: Dotted names of parameters and the values they are given.
     """
 
@@ -64,10 +73,10 @@ class StudySettings(NamedTuple):
     intention: str = "network"
     length: float = 8000.0
     speed: float = 70 / 3.6
-    car: str = "default"
-    predictor: str = OURS
+    car: str | CarParameters = "default"
+    predictor: str | Predictor | Judge = OURS
     weights: str = ""
-    drivers: tuple[str, ...] = ()
+    drivers: tuple[str | DriverParameters, ...] = ()
     parameters: tuple[tuple[str, float], ...] = ()
 
 
@@ -79,12 +88,12 @@ INTENTIONS = ("network", "scripted")
 
 
 def check_settings(settings: StudySettings) -> StudySettings:
-    """Return the settings with conditions in the order of Table IV.
+    """Return the settings with conditions in the order of Table IV, in plain numbers.
 
     Raises:
         ValueError: Naming the first value out of range, the range and the way out.
     """
-    known_settings = _checked_plan(settings)
+    known_settings = _checked_plan(_plain_settings(settings))
     for trial in plan_trials(1, known_settings.conditions):
         check_setup(trial_setup(known_settings, trial))
         loop_parameters(trial_setup(known_settings, trial))
@@ -92,6 +101,26 @@ def check_settings(settings: StudySettings) -> StudySettings:
         trial_setup(known_settings, plan_trials(1, (CONDITION_NAMES[1],))[0])
     )
     return known_settings
+
+
+def _plain_settings(settings: StudySettings) -> StudySettings:
+    """The settings in Python's own numbers: 500 and 500.0 are the same study.
+
+    Raises:
+        ValueError: If one is of a kind that it cannot be.
+    """
+    return settings._replace(
+        participants=plain_count(settings.participants),
+        seed=plain_count(settings.seed),
+        length=plain_number("length", settings.length, "m"),
+        speed=plain_number("speed", settings.speed, "m/s"),
+        weights=plain_text("weights", settings.weights),
+        car=plain_part("car", settings.car, CarParameters),
+        drivers=tuple(
+            plain_part("driver", each, DriverParameters) for each in settings.drivers
+        ),
+        parameters=plain_values(settings.parameters),
+    )
 
 
 def _checked_plan(settings: StudySettings) -> StudySettings:
@@ -137,21 +166,33 @@ def trial_setup(settings: StudySettings, trial: Trial) -> TrialSetup:
     )
 
 
-@cache
-def _car(text: str) -> str | CarParameters:
-    return car_of(text)
+def with_files_read(settings: StudySettings) -> StudySettings:
+    """The settings with car and drivers as they are in their files now.
+
+    Raises:
+        ValueError: If a file holds what it cannot.
+        OSError: If it cannot be read.
+    """
+    return settings._replace(
+        car=_car(settings.car), drivers=tuple(map(_driver_in, settings.drivers))
+    )
 
 
-@cache
-def _driver_in(file: str) -> DriverParameters:
-    return read_driver(Path(file))
+def _car(car: str | CarParameters) -> str | CarParameters:
+    return car_of(car) if isinstance(car, str) else car
 
 
-def _driver(files: tuple[str, ...], participant: int) -> str | DriverParameters:
-    """Who drives as a participant: of the population, or of one file after another."""
-    if not files:
+def _driver_in(driver: str | DriverParameters) -> DriverParameters:
+    return read_driver(Path(driver)) if isinstance(driver, str) else driver
+
+
+def _driver(
+    drivers: tuple[str | DriverParameters, ...], participant: int
+) -> str | DriverParameters:
+    """Who drives as a participant: of the population, or one driver after another."""
+    if not drivers:
         return "virtual"
-    return _driver_in(files[(participant - 1) % len(files)])
+    return _driver_in(drivers[(participant - 1) % len(drivers)])
 
 
 def study_configuration(settings: StudySettings) -> dict[str, object]:
@@ -165,7 +206,9 @@ def study_configuration(settings: StudySettings) -> dict[str, object]:
     given = settings._asdict() | {
         "method": settings.method if isinstance(settings.method, str) else method.name,
         "conditions": list(settings.conditions),
-        "drivers": list(settings.drivers),
+        "car": _named(settings.car),
+        "predictor": _predictor_name(settings.predictor),
+        "drivers": [_named(each) for each in settings.drivers],
         "parameters": dict(settings.parameters),
     }
     return {
@@ -178,11 +221,24 @@ def study_configuration(settings: StudySettings) -> dict[str, object]:
     }
 
 
+def _named(part: str | CarParameters | DriverParameters) -> str:
+    """A name or file; of an object only that it is one, its values stand apart."""
+    return part if isinstance(part, str) else OWN
+
+
+def _predictor_name(predictor: str | Predictor | Judge) -> str:
+    return predictor if isinstance(predictor, str) else chosen_predictor(predictor).name
+
+
+OWN = "own"
+"""A car or driver given as an object."""
+
+
 def _plugged_in(settings: StudySettings, method: AnyMethod) -> dict[str, object]:
     """What came from outside costeer, so that its results can be told from others."""
     setup = trial_setup(settings, Trial(1, CONDITION_NAMES[1], 1))
     predictor = trial_predictor(setup)
-    drivers = [_driver_in(file) for file in settings.drivers]
+    drivers = [_driver_in(each) for each in settings.drivers]
     car = setup.car
     return {
         "method_name": method.name,

@@ -7,6 +7,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from costeer.records.columns import MANUAL
+
 Signal = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 # Any: the element type differs from column to column.
@@ -106,6 +108,11 @@ def incomplete(columns: Columns, *names: str) -> str:
     if reason or not gaps:
         return reason
     return f"needs {_listed(gaps)} without gaps"
+
+
+def under_assistance(columns: Columns) -> bool:
+    """Whether there was a guidance with some strength in any sample."""
+    return "mode" in columns and bool((columns["mode"] != MANUAL).any())
 
 
 def is_defined(values: NDArray[Any]) -> Flags:

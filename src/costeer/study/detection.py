@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from costeer.records.columns import LANE_CHANGING, MANUAL
+from costeer.records.columns import LANE_CHANGING
 from costeer.study.crossings import LEFT, RIGHT, Crossing, line_crossings
 from costeer.study.definitions import (
     DEFAULTS,
@@ -19,6 +19,7 @@ from costeer.study.definitions import (
     incomplete,
     is_defined,
     missing,
+    under_assistance,
 )
 
 TRUE = "true"
@@ -55,7 +56,7 @@ class Detection(NamedTuple):
 
 
 def detect(
-    columns: Columns, parameters: MeasureParameters = DEFAULTS
+    columns: Columns, parameters: MeasureParameters = DEFAULTS, method: str = ""
 ) -> Detection | str:
     """Judge every trigger of a trial.
 
@@ -63,12 +64,14 @@ def detect(
         columns: `time`, `lateral_position`, `intention`; under assistance also
             `driver_intention` and `mode`; shape `(time,)` each.
         parameters: Horizons.
+        method: Name of the guidance, for the reason.
 
     Returns:
         The verdicts, or the reason why there are none.
     """
     reason = incomplete(columns, "time", "lateral_position", "intention")
-    reason = reason or _not_running(columns) or _cannot_judge(columns)
+    reason = reason or _not_running(columns) or _never_triggers(columns, method)
+    reason = reason or _cannot_judge(columns)
     if reason:
         return reason
     crossings = tuple(
@@ -114,19 +117,28 @@ def _not_running(columns: Columns) -> str:
     return ""
 
 
+def _never_triggers(columns: Columns, method: str) -> str:
+    """That the guidance starts no lane change; empty if it may.
+
+    It has then no target lane in any sample, and neither trigger nor path.
+    """
+    if not under_assistance(columns) or "target_lane" not in columns:
+        return ""
+    changing = np.any(columns["mode"] == LANE_CHANGING)
+    if np.any(columns["intention"]) or changing or not missing(columns, "target_lane"):
+        return ""
+    return f"{' '.join(['the method', method]).strip()} does not trigger lane changes"
+
+
 def _cannot_judge(columns: Columns) -> str:
     """Why the driver's own crossings are not known; empty if they are."""
-    if _knows_intention(columns) or not _is_assisted(columns):
+    if _knows_intention(columns) or not under_assistance(columns):
         return ""
     return "under assistance needs driver_intention, which is unknown for people"
 
 
 def _knows_intention(columns: Columns) -> bool:
     return not missing(columns, "driver_intention")
-
-
-def _is_assisted(columns: Columns) -> bool:
-    return "mode" in columns and bool((columns["mode"] != MANUAL).any())
 
 
 def _intended(columns: Columns, instant: float, direction: int) -> bool:

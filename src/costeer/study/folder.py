@@ -20,6 +20,7 @@ import yaml
 from filelock import FileLock, Timeout
 
 from costeer.base.files import prepare_folder, write_text
+from costeer.study.changes import refusal
 
 STUDY_FILE = "study.yaml"
 LOCK_FILE = ".lock"
@@ -153,48 +154,8 @@ def _owner(file: Path) -> str:
 def _refuse_other(wanted: StudyFolder, found: StudyFolder) -> None:
     if wanted.hash == found.hash:
         return
-    told = differences(found, wanted)
-    if _OPTIONS & changed_settings(found, wanted):
-        raise ValueError(
-            f"{wanted.path} holds another study: {told}. Choose another folder, or "
-            "give the options of that study to resume it"
-        )
-    raise ValueError(
-        f"{wanted.path} holds a study of another version of costeer: {told}. Choose "
-        "another folder, or remove this one to run the study anew"
-    )
-
-
-def differences(found: StudyFolder, wanted: StudyFolder) -> str:
-    """Name the settings in which two studies differ."""
-    there, here = found.configuration, wanted.configuration
-    told = [
-        f"{key} is {there.get(key)} there, {here.get(key)} here"
-        for key in sorted(changed_settings(found, wanted) - _NOT_TOLD)
-    ]
-    return "; ".join(told) or "it was simulated by other sources of costeer"
-
-
-def changed_settings(found: StudyFolder, wanted: StudyFolder) -> set[str]:
-    """Return the names of the settings in which two studies differ."""
-    there, here = found.configuration, wanted.configuration
-    return {k for k in there.keys() | here.keys() if there.get(k) != here.get(k)}
-
-
-_NOT_TOLD = {"order", "simulation_source"}
-"""Follows from the others; says nothing to a reader."""
-
-_OPTIONS = {
-    "participants",
-    "conditions",
-    "seed",
-    "method",
-    "intention",
-    "length",
-    "speed",
-    "car",
-}
-"""What a user chooses; all else comes with the version of costeer."""
+    told = refusal(found.configuration, wanted.configuration)
+    raise ValueError(f"{wanted.path} holds {told}")
 
 
 def _study_text(folder: StudyFolder, command: str) -> str:

@@ -17,6 +17,8 @@ from costeer.study.definitions import (
     MeasureParameters,
     Signal,
     incomplete,
+    missing,
+    under_assistance,
 )
 
 
@@ -42,18 +44,20 @@ class Inconsistency(NamedTuple):
 
 
 def find_inconsistencies(
-    columns: Columns, parameters: MeasureParameters = DEFAULTS
+    columns: Columns, parameters: MeasureParameters = DEFAULTS, method: str = ""
 ) -> tuple[Inconsistency, ...] | str:
     """All inconsistencies of a trial.
 
     Args:
-        columns: `time`, `consistent`, `haptic_gain`; shape `(time,)` each.
+        columns: `time`, `consistent`, `haptic_gain`, `mode`; shape `(time,)` each.
         parameters: Gains and rate.
+        method: Name of the guidance, for the reason.
 
     Returns:
         Them in order, or the reason why they cannot be told.
     """
-    reason = incomplete(columns, "time", "consistent", "haptic_gain")
+    reason = _no_verdict(columns, method)
+    reason = reason or incomplete(columns, "time", "consistent", "haptic_gain")
     if reason:
         return reason
     inconsistent = ~np.ma.getdata(columns["consistent"]).astype(bool)
@@ -63,6 +67,16 @@ def find_inconsistencies(
         _described(columns, inconsistent, frozen, rows)
         for rows in _episodes(inconsistent, recovered)
     )
+
+
+def _no_verdict(columns: Columns, method: str) -> str:
+    """That a guidance has no haptic gain, so that no verdict fades it; else empty."""
+    if not under_assistance(columns) or "haptic_gain" not in columns:
+        return ""
+    if not missing(columns, "haptic_gain"):
+        return ""
+    name = " ".join(["the method", method]).strip()
+    return f"{name} has no haptic gain and gives no verdict"
 
 
 def _episodes(inconsistent: Flags, recovered: Flags) -> list[slice]:

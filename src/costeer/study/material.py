@@ -16,13 +16,15 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from costeer.controller.replanning import ReplanningParameters
-from costeer.methods.conditions import CONDITION_NAMES
+from costeer.methods.conditions import CONDITION_NAMES, MANUAL
 from costeer.records.metadata import PERSON
 from costeer.records.record import read_record
 from costeer.study.folder import RECORDS, StudyFolder, read_study
+from costeer.study.measures import prepared
 from costeer.study.outcome import WITHIN, PairRow, StudyTests, SummaryRow
 from costeer.study.quantities import WORKLOAD, Quantity
 from costeer.study.statistics import MEASURES, Measure, study_tests
+from costeer.study.trial_measures import trial_measures
 from costeer.study.trial_tables import (
     LANE_CHANGES_FILE,
     TRIALS_FILE,
@@ -143,6 +145,26 @@ def strengths_driven(material: StudyMaterial) -> tuple[str, ...]:
 def is_virtual(material: StudyMaterial) -> bool:
     """Whether no person held the wheel in any trial."""
     return all(each["driver_kind"] != PERSON for each in material.metadata)
+
+
+def why_without(material: StudyMaterial, measure: str) -> str:
+    """Why no assisted trial has a value, as the first one's record says.
+
+    Args:
+        material: The study.
+        measure: Column of `trials.csv`.
+
+    Returns:
+        The reason; empty if one has a value, or no trial is assisted.
+    """
+    trials = material.trials
+    assisted = trials[trials["condition"] != MANUAL]
+    if assisted.empty or assisted[measure].notna().any():
+        return ""
+    path = next((p for key, p in material.records.items() if key[1] != MANUAL), None)
+    if path is None:
+        return "no record of an assisted trial is left"
+    return trial_measures(prepared(read_record(path)))[measure].reason
 
 
 def replan_gain(material: StudyMaterial) -> float:

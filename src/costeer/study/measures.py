@@ -42,7 +42,7 @@ def trial_row(
     Returns:
         Column names and values; the same names for every record.
     """
-    trial = prepare(record.columns, parameters_of(record, parameters))
+    trial = prepared(record, parameters)
     measures = trial_measures(trial)
     return {
         **_identity(record),
@@ -64,7 +64,7 @@ def lane_change_rows(
     Returns:
         Per completed lane change, column names and values.
     """
-    trial = prepare(record.columns, parameters_of(record, parameters))
+    trial = prepared(record, parameters)
     if isinstance(trial.segments, str):
         return []
     found = detect(trial.columns, trial.parameters)
@@ -91,8 +91,14 @@ def trigger_rows(
     Returns:
         Per trigger and per missed crossing, column names and values.
     """
-    trial = prepare(record.columns, parameters_of(record, parameters))
+    trial = prepared(record, parameters)
     return [{**_identity(record), **each} for each in trigger_costs(trial)]
+
+
+def prepared(record: TrialRecord, parameters: MeasureParameters = DEFAULTS) -> Trial:
+    """A trial ready to be measured, with what its description says of it."""
+    method = str(record.metadata.get("method") or "")
+    return prepare(record.columns, parameters_of(record, parameters), method)
 
 
 def parameters_of(

@@ -122,7 +122,8 @@ def _no_column(option: str, name: str, columns: Columns) -> str:
 
 def _no_time(columns: Columns) -> str:
     return (
-        "there is no column 'time' [s]; name yours, for example --rename t=time; "
+        "there is no column 'time' [s]; rename yours (on the command line, for "
+        "example, --rename t=time); "
         f"there are {', '.join(columns)}"
     )
 

@@ -22,6 +22,7 @@ from costeer.study.configuration import (
     check_settings,
     settings_of,
     study_configuration,
+    with_files_read,
 )
 from costeer.study.design import Trial
 from costeer.study.folder import StudyFolder, locked, opened_study, read_study
@@ -105,10 +106,11 @@ def run_study(
     settings = check_settings(settings)
     jobs = default_jobs() if jobs is None else jobs
     check_count("jobs", jobs, 1, MOST_JOBS)
+    driven = with_files_read(settings)
     configuration = study_configuration(settings)
-    try_plug_ins(settings, simulate)
+    try_plug_ins(driven, simulate)
     with opened_study(Path(out), configuration, study_command(settings)) as folder:
-        work = partial(finish_trial, folder, settings, simulate)
+        work = partial(finish_trial, folder, driven, simulate)
         done = _all_done(folder, work, jobs, progress)
         _write_results(folder.path, done, report)
     return StudyOutcome(
@@ -149,7 +151,15 @@ def remake_tables(path: Path, jobs: int | None = None) -> int:
 
 
 def study_command(settings: StudySettings) -> str:
-    """Return the command that runs this study; the folder is left to fill in."""
+    """Return what runs this study; the folder is left to fill in.
+
+    It is a command, or a call in Python if something was given as an object.
+    """
+    if _objects(settings):
+        return (
+            "costeer.study(FOLDER, ...) in Python, with the same arguments; "
+            f"{', '.join(_objects(settings))} given as objects"
+        )
     default = PUBLISHED_STUDY._asdict()
     words = ["costeer", "study", "--out", "FOLDER"]
     for name, value in settings._asdict().items():
@@ -158,14 +168,24 @@ def study_command(settings: StudySettings) -> str:
     return shlex.join(words)
 
 
+def _objects(settings: StudySettings) -> list[str]:
+    """What no command line can name, as `method pi-keeping`."""
+    given = {
+        name: getattr(settings, name) for name in ("method", "car", "predictor")
+    } | {f"driver {n}": each for n, each in enumerate(settings.drivers, 1)}
+    return [
+        f"{name} {getattr(part, 'name', '')}".rstrip()
+        for name, part in given.items()
+        if not isinstance(part, str)
+    ]
+
+
 def _option(name: str, value: Any) -> list[str]:  # Any: of a setting
     """A setting as words of the command line."""
     if name == "drivers":
         return [word for file in value for word in ("--driver-file", file)]
     if name == "parameters":
         return [w for place, number in value for w in ("--set", f"{place}={number!r}")]
-    if name == "method":
-        return ["--method", value if isinstance(value, str) else value.name]
     return [f"--{name}", ",".join(value) if name == "conditions" else str(value)]
 
 

@@ -48,8 +48,9 @@ def sampling(time: Signal) -> Sampling:
         row = int(steps.argmax())
         raise ValueError(
             f"{longest:g} s pass between rows {row} and {row + 1}, at most "
-            f"{LONGEST_STEP:g} s can be bridged; split the recording there with "
-            "--sequence, or, if time is in milliseconds, add --scale time=0.001"
+            f"{LONGEST_STEP:g} s can be bridged; tell its parts apart by a column "
+            "'sequence', or, if time is in milliseconds, multiply it by 0.001 (on the "
+            "command line: --scale time=0.001)"
         )
     unevenness = float(np.abs(steps / mean - 1.0).max())
     return Sampling(rate=1.0 / mean, unevenness=unevenness, longest_step=longest)

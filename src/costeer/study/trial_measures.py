@@ -39,20 +39,24 @@ class Trial(NamedTuple):
         parameters: Thresholds.
         segments: Lane changes and lane keeping, or why they are not known.
         speed: Lateral speed [m/s], shape `(time,)`; empty without segments.
+        method: Name of the guidance; empty if it is not known.
     """
 
     columns: Columns
     parameters: MeasureParameters
     segments: Segments | str
     speed: Signal
+    method: str = ""
 
 
-def prepare(columns: Columns, parameters: MeasureParameters = DEFAULTS) -> Trial:
+def prepare(
+    columns: Columns, parameters: MeasureParameters = DEFAULTS, method: str = ""
+) -> Trial:
     """Cut a trial into segments and find its lateral speed."""
     segments = segment(columns, parameters)
     known = isinstance(segments, Segments)
     speed = lateral_speed(columns) if known else np.zeros(0)
-    return Trial(columns, parameters, segments, speed)
+    return Trial(columns, parameters, segments, speed, method)
 
 
 def trial_measures(trial: Trial) -> Measures:
@@ -167,7 +171,7 @@ def _departures(trial: Trial) -> Measures:
 
 
 def _detection(trial: Trial) -> Measures:
-    found = detect(trial.columns, trial.parameters)
+    found = detect(trial.columns, trial.parameters, trial.method)
     if isinstance(found, str):
         reason = found
         return {name: unknown(unit, reason) for name, unit in _DETECTION_UNITS.items()}
@@ -218,7 +222,7 @@ def _lead_time(found: Detection) -> Measure:
 
 
 def _inconsistencies(trial: Trial) -> Measures:
-    found = find_inconsistencies(trial.columns, trial.parameters)
+    found = find_inconsistencies(trial.columns, trial.parameters, trial.method)
     if isinstance(found, str):
         reason = found
         return {name: unknown(u, reason) for name, u in _INCONSISTENCY_UNITS.items()}

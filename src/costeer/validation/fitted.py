@@ -12,8 +12,10 @@ from typing import NamedTuple
 
 import numpy as np
 
+from costeer.base.described import described
 from costeer.drivers.driver import DriverParameters
 from costeer.identification.fit import DriverFit
+from costeer.identification.recording import vehicle_of
 from costeer.loop.parameters import DT
 from costeer.loop.scenario import (
     FASTEST,
@@ -21,6 +23,7 @@ from costeer.loop.scenario import (
     TrialSetup,
 )
 from costeer.loop.trial import simulate_trial
+from costeer.plant.parameters import CarParameters
 from costeer.records.columns import TrialRecord
 from costeer.study.definitions import Columns, Measure
 from costeer.study.jobs import run_jobs
@@ -67,6 +70,7 @@ def check_fit(
     jobs: int = 1,
     repeats: int = REPEATS,
     advance: Callable[[int], None] = lambda _: None,
+    car: str | CarParameters | None = None,
 ) -> list[Check]:
     """Compare a recording with trials of the fitted driver.
 
@@ -76,11 +80,12 @@ def check_fit(
         jobs: Trials at a time.
         repeats: How many trials, each with other noise.
         advance: Called with 1 after each trial.
+        car: That was driven; None takes the record's.
 
     Raises:
         ValueError: If the recording's speed is outside the simulator's range.
     """
-    setup = same_trial(record)
+    setup = same_trial(record, car)
     recorded = measured(record.columns)
     simulated = run_jobs(
         lambda number: measured(simulate(setup, fit.driver, number)),
@@ -94,7 +99,9 @@ def check_fit(
     ]
 
 
-def same_trial(record: TrialRecord) -> TrialSetup:
+def same_trial(
+    record: TrialRecord, car: str | CarParameters | None = None
+) -> TrialSetup:
     """The manual trial that is most like a recording: length, speed, car, leaders.
 
     Raises:
@@ -107,6 +114,7 @@ def same_trial(record: TrialRecord) -> TrialSetup:
             f"the recording's mean speed is {speed:.3g} m/s; a check by simulation "
             f"needs {SLOWEST:g} to {FASTEST:g} m/s"
         )
+    driven, column = vehicle_of(record, car)
     return TrialSetup(
         seed=FIT_SEED,
         condition="manual",
@@ -115,8 +123,9 @@ def same_trial(record: TrialRecord) -> TrialSetup:
         change_duration=math.nan,
         length=min(speed * DT * len(columns["time"]), _LONGEST),
         speed=speed,
-        car=str(record.metadata.get("car") or "default"),
+        car=driven,
         events=_has_leaders(columns),
+        parameters=tuple((f"column.{d.name}", d.value) for d in described(column)),
     )
 
 

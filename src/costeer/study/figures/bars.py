@@ -104,8 +104,17 @@ def _caption(material: StudyMaterial, quantity: Quantity, both: bool) -> str:
         f"{what}Means {unit}over {who}, {interval}. Rows above: "
         "difference from manual, Benjamini-Hochberg corrected, within subjects and "
         f"pooled as published: * p < 0.05, ** p < 0.01, *** p < 0.001, n.s. not "
-        f"significant, – not tested.{brackets}"
+        f"significant, – not tested.{brackets}{_cut(material, quantity, both)}"
     )
+
+
+def _cut(material: StudyMaterial, quantity: Quantity, both: bool) -> str:
+    """Say that an interval goes below the axis, where one does."""
+    drawn = [("condition", each) for each in conditions_driven(material)]
+    drawn += [("strength", each) for each in strengths_driven(material) if both]
+    found = (_interval(material, quantity, *each) for each in drawn)
+    below = any(each is not None and each[0] < each[1] for each in found)
+    return " Intervals that reach below zero are cut at zero." if below else ""
 
 
 def _description(quantity: Quantity) -> str:

@@ -16,7 +16,7 @@ from costeer.study.figures import (
     workload,
 )
 from costeer.study.figures.episodes import exemplary_inconsistency
-from costeer.study.material import StudyMaterial, replan_gain
+from costeer.study.material import StudyMaterial, replan_gain, why_without
 from costeer.study.quantities import QUANTITIES, WORKLOAD
 
 FIGURE_NAMES: tuple[str, ...] = (
@@ -48,5 +48,6 @@ def draw_figures(material: StudyMaterial) -> Iterator[Exhibit]:
     yield detection.draw(material)
     for strength in STRENGTHS:
         yield signals.draw(material, strength)
-    yield inconsistency.draw(episode)
-    yield gain.draw(episode, gain_limit)
+    no_verdict = why_without(material, "num_inconsistencies")
+    yield inconsistency.draw(episode, no_verdict)
+    yield gain.draw(episode, gain_limit, no_verdict)

@@ -21,7 +21,7 @@ from costeer.pages.style import (
     panels,
 )
 from costeer.study.figures.colours import condition_colour
-from costeer.study.material import StudyMaterial, conditions_driven
+from costeer.study.material import StudyMaterial, conditions_driven, why_without
 from costeer.study.quantities import half_width
 
 NAME = "detection"
@@ -164,14 +164,27 @@ def _short(name: str) -> str:
     return f"{chosen.strength} {chosen.duration}".strip()
 
 
+def _reaches_below(material: StudyMaterial) -> bool:
+    """Whether the interval of a rate is longer than its bar."""
+    return any(
+        half_width(values) > values.mean()
+        for name in conditions_driven(material)
+        for column in ("false_triggers_per_km", "missed_per_km")
+        if (values := _rates(material, name, column)).size
+    )
+
+
 def _caption(material: StudyMaterial) -> str:
     many = material.trials["participant"].nunique() > 1
-    interval = ", with 95 % intervals" if many else ""
+    cut = ", cut at zero where they reach below" if _reaches_below(material) else ""
+    interval = f", with 95 % intervals{cut}" if many else ""
+    silent = why_without(material, "num_triggers")
+    why = f" Manual driving alone: {silent}." if silent else ""
     return (
         "(a) Share of the lane changes that the driver intended and that were "
         "announced at least so long before the crossing; missed ones count in the "
         "share. Dotted: the 3 s that the network is asked for. (b) False triggers and "
         "(c) missed lane changes per kilometre: means over participants"
         f"{interval}. Under assistance triggers are judged against the driver's own "
-        "intention, not against crossings that the guidance made."
+        f"intention, not against crossings that the guidance made.{why}"
     )

@@ -7,7 +7,7 @@ from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
 from costeer.controller.strength import StrengthParameters, haptic_gain
-from costeer.pages.exhibit import Exhibit
+from costeer.pages.exhibit import Exhibit, not_drawn
 from costeer.pages.style import (
     COLUMN_WIDTH_MM,
     FAINT,
@@ -32,13 +32,16 @@ _SWITCHES = ((0.0, 4.0), (0.0, 1.0))
 _STYLES = ("-", (0, (4.0, 1.5)))
 
 
-def draw(episode: Episode | None, replan_gain: float) -> Exhibit:
+def draw(episode: Episode | None, replan_gain: float, no_verdict: str = "") -> Exhibit:
     """Draw Eqs. (10) and (11), and one recorded fade where there is one.
 
     Args:
         episode: An inconsistency of the study.
         replan_gain: Gain below which the system plans anew [-].
+        no_verdict: Why there is no verdict in any trial; empty if there are some.
     """
+    if no_verdict:
+        return not_drawn(NAME, TITLE, f"No gain is adjusted: {no_verdict}.")
     num_panels = 1 if episode is None else 2
     figure = new_figure(COLUMN_WIDTH_MM if num_panels == 1 else FULL_WIDTH_MM, 58.0)
     margins = Margins(left=13.0, top=7.0, between_columns=14.0)

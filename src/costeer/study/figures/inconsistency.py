@@ -37,12 +37,18 @@ _WIDTH_OF_LETTER = 0.0105
 """Of the panel, per letter of a state's name."""
 
 
-def draw(episode: Episode | None) -> Exhibit:
-    """Draw one inconsistency, or say that there was none."""
+def draw(episode: Episode | None, no_verdict: str = "") -> Exhibit:
+    """Draw one inconsistency, or say that there was none.
+
+    Args:
+        episode: An inconsistency of the study.
+        no_verdict: Why there is no verdict in any trial; empty if there are some.
+    """
     if episode is None:
-        return not_drawn(
-            NAME, TITLE, "No verdict was inconsistent in any trial of this study."
-        )
+        why = "No verdict was inconsistent in any trial of this study."
+        if no_verdict:
+            why = f"There is no verdict in this study: {no_verdict}."
+        return not_drawn(NAME, TITLE, why)
     figure = new_figure(FULL_WIDTH_MM, 150.0)
     margins = Margins(left=20.0, right=25.0, top=7.0, bottom=10.0, between_rows=3.0)
     grid = panels(figure, len(_HEIGHTS), 1, margins, row_heights=_HEIGHTS)

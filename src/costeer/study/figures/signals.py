@@ -77,19 +77,35 @@ def draw(material: StudyMaterial, strength: str) -> Exhibit:
     if participant is None or not assisted:
         lacking = f"No trial with {strength} guidance holds a lane change to the right."
         return not_drawn(name, title, lacking)
-    figure = new_figure(FULL_WIDTH_MM, 178.0)
+    shown = _told([moments[key] for key in assisted])
+    figure = new_figure(FULL_WIDTH_MM, 178.0 / len(SIGNALS) * len(shown))
     margins = Margins(left=18.0, top=10.0, bottom=10.0, between_columns=5.0)
-    grid = panels(figure, len(SIGNALS), len(assisted), margins)
+    grid = panels(figure, len(shown), len(assisted), margins)
     for column, key in enumerate(assisted):
-        axes = [row[column] for row in grid]
+        axes = dict(zip(shown, (row[column] for row in grid), strict=True))
         _draw_column(axes, key, moments[key], moments.get(MANUAL))
-    for signal, row in zip(SIGNALS, grid, strict=True):
+    for signal, row in zip(shown, grid, strict=True):
         _share_range(row, signal)
     figure.align_ylabels([row[0] for row in grid])
     handles = _legend(strength, MANUAL in moments)
     figure.legend(handles=handles, ncols=len(handles), loc="upper right")
-    caption = _caption(participant, strength, MANUAL in moments)
-    return Exhibit(name, title, caption, _description(participant, strength), figure)
+    caption = _caption(participant, strength, MANUAL in moments) + _left_out(shown)
+    description = _description(participant, strength)
+    return Exhibit(name, title, caption, description, figure)
+
+
+def _told(moments: list[Moment]) -> list[Signal]:
+    """The signals that say something in one of these moments."""
+    return [
+        signal
+        for signal in SIGNALS
+        if any(np.isfinite(each.columns[signal.column]).any() for each in moments)
+    ]
+
+
+def _left_out(shown: list[Signal]) -> str:
+    names = [signal.column for signal in SIGNALS if signal not in shown]
+    return f" Undefined throughout, not drawn: {', '.join(names)}." if names else ""
 
 
 def _caption(participant: int, strength: str, with_manual: bool) -> str:
@@ -110,7 +126,7 @@ def _caption(participant: int, strength: str, with_manual: bool) -> str:
 
 def _description(participant: int, strength: str) -> str:
     return (
-        f"Seven signals of participant {participant} against time, a column of panels "
+        f"Signals of participant {participant} against time, a column of panels "
         f"for each duration of {strength} guidance, each over the manual drive."
     )
 
@@ -151,10 +167,11 @@ def _moment(path: Path, crossing: float) -> Moment:
 
 
 def _draw_column(
-    axes: list[Axes], key: str, assisted: Moment, manual: Moment | None
+    axes: dict[Signal, Axes], key: str, assisted: Moment, manual: Moment | None
 ) -> None:
     changing = assisted.columns["mode"] == "lane_changing"
-    for panel, signal in zip(axes, SIGNALS, strict=True):
+    *_, last = axes.values()
+    for signal, panel in axes.items():
         _shade(panel, assisted.time, changing)
         if manual is not None and signal.column not in _ONLY_ASSISTED:
             _line(panel, manual, signal, STRENGTH_COLOURS[MANUAL])
@@ -162,10 +179,12 @@ def _draw_column(
         panel.axvline(0.0, color=FAINT, linewidth=0.5, zorder=0)
         panel.set_xlim(-_BEFORE, _AFTER)
         panel.set_xticks([-8, -4, 0, 4, 8])
-        panel.tick_params(labelbottom=panel is axes[-1])
+        panel.tick_params(labelbottom=panel is last)
     chosen = condition(key)
-    axes[0].set_title(f"{chosen.duration} ({chosen.change_duration:g} s)")
-    axes[-1].set_xlabel("Time from crossing [s]")
+    next(iter(axes.values())).set_title(
+        f"{chosen.duration} ({chosen.change_duration:g} s)"
+    )
+    last.set_xlabel("Time from crossing [s]")
 
 
 def _line(panel: Axes, moment: Moment, signal: Signal, colour: str) -> None:

@@ -9,7 +9,7 @@ import pandas as pd
 from costeer.methods.conditions import MANUAL
 from costeer.pages.numerals import NOTHING, count, number, percent
 from costeer.pages.tables import Table
-from costeer.study.material import StudyMaterial, conditions_driven
+from costeer.study.material import StudyMaterial, conditions_driven, why_without
 from costeer.study.reporting.overview import tallies, total, weighted
 
 
@@ -119,7 +119,7 @@ def detection_table(material: StudyMaterial) -> Table:
         "within 3 to 5 s; false: else. Triggers within 1 s count once. Lead time [s] "
         "from the "
         "first trigger to the crossing, of lane changes that were announced: median, "
-        "below it the 10th and 90th percentile.",
+        f"below it the 10th and 90th percentile.{not_judged(material)}",
         header=(
             "Condition",
             *counted.values(),
@@ -131,28 +131,21 @@ def detection_table(material: StudyMaterial) -> Table:
     )
 
 
-def inconsistencies_table(material: StudyMaterial) -> Table:
-    """Return inconsistencies, their course and recovery per condition."""
-    rows = []
-    for name in conditions_driven(material):
-        trials = material.trials[material.trials["condition"] == name]
-        known = trials.dropna(subset=["num_inconsistencies"])
-        if known.empty:
-            continue
-        amount = float(known["num_inconsistencies"].sum())
-        changes = float(known["num_lane_changes"].sum())
-        rows.append(
-            (
-                name,
-                count(amount),
-                number(amount / changes if changes else math.nan, 3),
-                number(weighted(known, "inconsistency_duration"), 2),
-                number(float(known["inconsistency_gain_minimum"].min()), 3),
-                number(weighted(known, "recovery_time"), 2),
-                number(weighted(known, "verdict_flips"), 1),
-                number(weighted(known, "frozen_time"), 2),
-            )
-        )
+def not_judged(material: StudyMaterial) -> str:
+    """Say why nothing is counted under assistance; empty if something may be."""
+    silent = why_without(material, "num_triggers")
+    return f" Under assistance nothing is counted: {silent}." if silent else ""
+
+
+def inconsistencies_table(material: StudyMaterial) -> Table | None:
+    """Return inconsistencies and their course per condition; None if none is judged."""
+    rows = [
+        _inconsistency_row(name, known)
+        for name in conditions_driven(material)
+        if not (known := _with_verdict(material, name)).empty
+    ]
+    if not rows:
+        return None
     return Table(
         name="inconsistencies",
         title="Inconsistencies between driver and guidance",
@@ -171,6 +164,26 @@ def inconsistencies_table(material: StudyMaterial) -> Table:
             "Frozen [s]",
         ),
         rows=tuple(rows),
+    )
+
+
+def _with_verdict(material: StudyMaterial, name: str) -> pd.DataFrame:
+    trials = material.trials[material.trials["condition"] == name]
+    return trials.dropna(subset=["num_inconsistencies"])
+
+
+def _inconsistency_row(name: str, known: pd.DataFrame) -> tuple[str, ...]:
+    amount = float(known["num_inconsistencies"].sum())
+    changes = float(known["num_lane_changes"].sum())
+    return (
+        name,
+        count(amount),
+        number(amount / changes if changes else math.nan, 3),
+        number(weighted(known, "inconsistency_duration"), 2),
+        number(float(known["inconsistency_gain_minimum"].min()), 3),
+        number(weighted(known, "recovery_time"), 2),
+        number(weighted(known, "verdict_flips"), 1),
+        number(weighted(known, "frozen_time"), 2),
     )
 
 

@@ -17,6 +17,7 @@ from costeer.study.material import (
     conditions_driven,
     is_virtual,
     strengths_driven,
+    why_without,
 )
 
 CHANGES_PER_EVENT = 2
@@ -215,13 +216,15 @@ def detection_sentence(material: StudyMaterial) -> str:
     known = trials.dropna(subset=["num_false_triggers"])
     if known.empty:
         return "No trial has triggers to judge."
+    silent = why_without(material, "num_triggers")
+    only = f"In manual driving alone, as {silent}: " if silent else ""
     distance = float(known["distance"].sum()) / 1000.0
     false, early = (
         int(known[f"num_{kind}_triggers"].sum()) for kind in ("false", "early")
     )
     missed = int(known["num_missed"].sum())
     return (
-        f"{_announced(changes)} Missed: {missed}. "
+        f"{only}{_announced(changes)} Missed: {missed}. "
         f"{plural(false, 'false trigger')} in {number(distance, 0)} km "
         f"({number(false / distance, 3)} per km, {_rate_interval(false, distance)}), "
         f"and {early} early, 3 to 5 s before the crossing."
@@ -260,7 +263,8 @@ def inconsistency_sentence(material: StudyMaterial) -> str:
     """Say how often driver and guidance were found to want different paths."""
     known = material.trials.dropna(subset=["num_inconsistencies"])
     if known.empty:
-        return "No assisted trial: there is no verdict on inconsistency."
+        why = why_without(material, "num_inconsistencies") or "no trial is assisted"
+        return f"There is no verdict on inconsistency: {why}."
     amount = int(known["num_inconsistencies"].sum())
     changes = int(known["num_lane_changes"].sum())
     text = (

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 
 from costeer.pages.frame import Picture, Section
 from costeer.pages.tables import Table, versions_table
-from costeer.study.material import StudyMaterial, is_virtual
+from costeer.study.material import StudyMaterial, is_virtual, why_without
 from costeer.study.quantities import BY_STRENGTH, WORKLOAD
 from costeer.study.reporting import event_tables, making, statistics_tables, tables
 from costeer.study.reporting.comparisons import shown_quantities
@@ -105,15 +105,20 @@ _INTENTION_TEXTS = {
 def _inconsistencies(
     material: StudyMaterial, pictures: Mapping[str, Picture]
 ) -> Section:
-    text = (
-        "Driver and guidance are inconsistent when their torques point to opposite "
-        "sides and their pseudo-works differ by more than a threshold. The gain then "
-        "fades out; below the re-plan gain the system plans anew; the gain fades in "
-        "again.",
-    )
     items = _chosen(pictures, ("inconsistency", "gain-adjustment"))
-    items += (event_tables.inconsistencies_table(material),)
+    table = event_tables.inconsistencies_table(material)
+    items += (table,) if table else ()
+    why = why_without(material, "num_inconsistencies")
+    text = (f"Nothing can be told: {why}.",) if why else _INCONSISTENT
     return Section("inconsistency", "Inconsistency and gain", text, items)
+
+
+_INCONSISTENT = (
+    "Driver and guidance are inconsistent when their torques point to opposite "
+    "sides and their pseudo-works differ by more than a threshold. The gain then "
+    "fades out; below the re-plan gain the system plans anew; the gain fades in "
+    "again.",
+)
 
 
 def _signals(pictures: Mapping[str, Picture]) -> Section:

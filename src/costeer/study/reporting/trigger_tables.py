@@ -11,7 +11,7 @@ from costeer.study.definitions import DEFAULTS
 from costeer.study.detection import EARLY, FALSE, TRUE
 from costeer.study.material import StudyMaterial, conditions_driven
 from costeer.study.rates import poisson_interval
-from costeer.study.reporting.event_tables import spread_text
+from costeer.study.reporting.event_tables import not_judged, spread_text
 from costeer.study.trigger_episodes import MISSED
 
 EVENTS = {
@@ -58,7 +58,7 @@ def trigger_costs_table(material: StudyMaterial) -> Table | None:
     return Table(
         name="trigger-costs",
         title="What false and missed triggers cost",
-        note=_NOTE,
+        note=_NOTE + not_judged(material),
         header=(
             "Condition",
             "Event",
@@ -83,7 +83,9 @@ _NOTE = (
     "inconsistent verdict, where there is one. Settled: straight and near the centre "
     "of the meant lane, the guidance aiming at it. Both from the start. Conflict: in "
     "how many a verdict was inconsistent, and in how many the gain then fell below "
-    "that of re-planning, of how many. Manual: nothing follows a trigger, so the costs "
+    "that of re-planning, of how many. A crossing that became no completed lane change "
+    "has no costs: it counts in Number and not in these columns. Manual: nothing "
+    "follows a trigger, so the costs "
     f"are what driving is without guidance. Per {_UNIT:g} km: in brackets the exact "
     "95 % interval of a Poisson count; where nothing was counted its upper end, "
     "-ln(0.025) over the distance."
