@@ -7,11 +7,17 @@ import shutil
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
 import pytest
 
-from costeer.base import entry
+from costeer.base import entry, notice
 from costeer.base.entry import COMPILED_ROOMS, cache_folder, source_hash
+
+
+def torque_of(angle: float) -> float:
+    return 3.0 * angle
+
 
 EQUATION = """
 from numba.extending import register_jitable
@@ -103,12 +109,71 @@ def test_the_cache_keeps_the_newest_few_sources(
     assert kept == {current.name, "earlier-0", "earlier-1"}
 
 
-def test_without_a_writable_cache_the_temporary_folder_serves(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+@pytest.fixture
+def told(monkeypatch: pytest.MonkeyPatch) -> list[str]:
+    """What a user is told of machine code."""
+    lines: list[str] = []
+    monkeypatch.setattr(notice, "tellers", [lines.append])
+    return lines
+
+
+def test_without_a_writable_cache_a_folder_of_this_process_alone_serves(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, told: list[str]
 ) -> None:
     (tmp_path / "file").touch()
     monkeypatch.setenv("COSTEER_CACHE", str(tmp_path / "file"))
-    assert cache_folder.__wrapped__().parent.name == "costeer-numba"
+    monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
+    one, other = cache_folder.__wrapped__(), cache_folder.__wrapped__()
+    assert one != other  # nobody could know the name and lay code there before
+    assert one.parent == tmp_path
+    assert one.stat().st_mode & 0o777 == 0o700
+    assert "Not a directory; set COSTEER_CACHE to a folder of yours" in told[0]
+
+
+def test_a_folder_that_others_may_write_to_is_not_trusted(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, told: list[str]
+) -> None:
+    monkeypatch.setenv("COSTEER_CACHE", str(tmp_path / "shared"))
+    usual = cache_folder.__wrapped__()
+    assert usual.is_relative_to(tmp_path / "shared")
+    assert usual.stat().st_mode & 0o777 == 0o700
+    usual.parent.chmod(0o777)
+    assert not cache_folder.__wrapped__().is_relative_to(tmp_path / "shared")
+    assert "everybody may write there" in told[0]
+    usual.parent.chmod(0o700)
+    monkeypatch.setattr(os, "getuid", lambda: usual.stat().st_uid + 1)
+    assert not cache_folder.__wrapped__().is_relative_to(tmp_path / "shared")
+    assert "it belongs to somebody else" in told[1]
+
+
+def damages(content: bytes) -> list[bytes]:
+    """What a full disk, a broken one or a thief makes of a file."""
+    flipped = bytes([*content[:40], content[40] ^ 1, *content[41:]])
+    return [b"", content[:10], content[:-1], content[: len(content) // 2], flipped]
+
+
+def test_machine_code_that_is_damaged_is_made_anew_and_that_is_told(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, told: list[str]
+) -> None:
+    monkeypatch.setattr(entry, "cache_folder", lambda: tmp_path)
+
+    def compiled() -> Any:
+        return entry.entry(torque_of)
+
+    assert compiled()(2.0) == 6.0
+    kept = {path: path.read_bytes() for path in tmp_path.rglob("*.nb?")}
+    assert {path.suffix for path in kept} == {".nbi", ".nbc"}
+    again = compiled()
+    assert (again(2.0), sum(again.stats.cache_hits.values())) == (6.0, 1)
+    for path, content in kept.items():
+        for damaged in damages(content):
+            path.write_bytes(damaged)
+            told.clear()
+            once_more = compiled()
+            assert once_more(2.0) == 6.0
+            assert sum(once_more.stats.cache_hits.values()) == 0
+            assert "was damaged; it is made anew" in told[0]
+            assert compiled()(2.0) == 6.0
 
 
 RIVAL = """

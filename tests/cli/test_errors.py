@@ -7,6 +7,7 @@ import os
 import subprocess
 import sys
 from collections.abc import Callable
+from pathlib import Path
 
 import pytest
 import typer
@@ -87,14 +88,62 @@ def test_interruption_inside_a_command_is_130(
     assert capsys.readouterr().err == "costeer: stopped\n"
 
 
-def test_a_fault_of_the_program_is_not_hidden() -> None:
-    with pytest.raises(ZeroDivisionError):
-        exit_code_of(raising(ZeroDivisionError()))
+@pytest.mark.parametrize(
+    ("error", "named"),
+    [
+        (ZeroDivisionError("by zero"), "ZeroDivisionError: by zero"),
+        (KeyError("kind"), "KeyError: 'kind'"),
+        (RecursionError("too deep"), "RecursionError: too deep"),
+        (OverflowError("too large"), "OverflowError: too large"),
+        (ModuleNotFoundError("x", name="costeer.nothing"), "ModuleNotFoundError: x"),
+    ],
+)
+def test_a_mistake_of_costeer_is_one_line_70_and_a_file_to_send(
+    error: Exception,
+    named: str,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
+    monkeypatch.setattr("sys.argv", ["costeer", "study", "--out", "x"])
+    assert exit_code_of(raising(error)) == 70
+    (line,) = capsys.readouterr().err.splitlines()
+    (file,) = tmp_path.iterdir()
+    assert f"a mistake in costeer, not in your input: {named}; please send" in line
+    assert line.endswith(str(file))
+    sent = file.read_text("utf-8")
+    assert sent.startswith("costeer study --out x\n")
+    assert "Traceback" in sent
+    assert named in sent
 
 
-def test_a_missing_module_of_no_extra_is_not_hidden() -> None:
-    with pytest.raises(ModuleNotFoundError):
-        exit_code_of(raising(ModuleNotFoundError("x", name="costeer.nothing")))
+def test_where_no_file_can_be_written_the_option_is_named(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def full(**_: object) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr("tempfile.mkstemp", full)
+    assert exit_code_of(raising(KeyError("kind"))) == 70
+    assert "with --debug and send what it prints" in capsys.readouterr().err
+
+
+def test_too_little_memory_is_told(capsys: pytest.CaptureFixture[str]) -> None:
+    assert exit_code_of(raising(MemoryError())) == 2
+    assert "not enough memory" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("words", [["--debug", "report"], ["report", "--debug"]])
+def test_debug_shows_the_traceback_wherever_it_stands(
+    words: list[str],
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    monkeypatch.setenv("COSTEER_TRACEBACK", "")
+    assert main([*words, str(tmp_path / "none")]) == 2
+    assert "Traceback" in capsys.readouterr().err
 
 
 def test_traceback_is_shown_on_demand(

@@ -160,3 +160,13 @@ def test_an_event_counts_in_its_condition_and_among_all(
     number = {row[0]: row[2] for row in table.rows if row[1] == "missed"}
     assert number.pop("strong-rapid") == number.pop("all assisted") == "1"
     assert set(number.values()) == {"0"}
+
+
+def test_a_study_without_any_trigger_is_reported(
+    study_folder: Path, tmp_path: Path
+) -> None:
+    folder = tmp_path / "study"
+    shutil.copytree(study_folder, folder)
+    (folder / TRIGGERS_FILE).write_text(",".join(TRIGGER_COLUMNS) + "\n")
+    rows = shown(read_material(folder)).rows
+    assert {row[2] for row in rows} == {"0"}

@@ -10,8 +10,6 @@ from __future__ import annotations
 
 import hashlib
 import os
-import shutil
-import tempfile
 from collections.abc import Callable, Iterable
 from functools import cache
 from pathlib import Path
@@ -21,13 +19,13 @@ import numba
 from numba.core import event
 from numba.core.caching import FunctionCache
 
+from costeer.base.machine_code import SealedFiles, private_folder
 from costeer.base.notice import Compilations
 from costeer.base.packing import layout_of
 from costeer.base.sources import is_interactive
 from costeer.base.sources import source_hash as plugin_hash
 
 Function = TypeVar("Function", bound=Callable[..., Any])
-_KEPT_FOLDERS = 3
 _settings = cast("Any", numba.config)  # Any: Numba sets its attributes at import
 
 
@@ -76,21 +74,21 @@ def cache_folder() -> Path:
     """Return the folder for machine code: COSTEER_CACHE, else the user's cache."""
     home = os.environ.get("XDG_CACHE_HOME") or str(Path.home() / ".cache")
     root = Path(os.environ.get("COSTEER_CACHE") or Path(home) / "costeer") / "numba"
-    folder = root / source_hash(Path(__file__).parents[1])
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        _forget_old(root, folder)
-    except OSError:
-        return Path(tempfile.gettempdir()) / "costeer-numba" / folder.name
-    return folder
+    return private_folder(root, source_hash(Path(__file__).parents[1]))
 
 
-def _forget_old(root: Path, current: Path) -> None:
-    """Remove all but the newest few folders of earlier sources."""
-    others = [f for f in root.iterdir() if f.is_dir() and f != current]
-    others.sort(key=lambda folder: folder.stat().st_mtime, reverse=True)
-    for folder in others[_KEPT_FOLDERS - 1 :]:
-        shutil.rmtree(folder, ignore_errors=True)
+def _kept(dispatcher: Any, kept: FunctionCache) -> Any:  # Any: Numba has no types
+    """A compiled function whose machine code is kept in sealed files."""
+    files = cast("Any", kept)
+    usual = files._cache_file
+    sealed: Any = SealedFiles
+    files._cache_file = sealed(
+        usual._cache_path,
+        usual._index_name.removesuffix(".nbi"),
+        usual._source_stamp,
+    )
+    dispatcher._cache = files
+    return dispatcher
 
 
 def entry_for(parts: Iterable[Callable[..., Any]], function: Function) -> Function:
@@ -111,7 +109,7 @@ def entry_for(parts: Iterable[Callable[..., Any]], function: Function) -> Functi
     before = _settings.CACHE_DIR
     _settings.CACHE_DIR = str(cache_folder() / plugin_hash(parts))
     try:
-        dispatcher._cache = cast("Any", _ClosureCache)(function)
+        _kept(dispatcher, cast("Any", _ClosureCache)(function))
     finally:
         _settings.CACHE_DIR = before
     return cast("Function", dispatcher)
@@ -152,7 +150,7 @@ def entry(function: Function) -> Function:
     before = _settings.CACHE_DIR
     _settings.CACHE_DIR = str(cache_folder())
     try:
-        decorate = numba.njit(cache=True, nogil=True, error_model="numpy")
-        return cast("Function", decorate(function))
+        dispatcher = numba.njit(nogil=True, error_model="numpy")(function)
+        return cast("Function", _kept(dispatcher, cast("Any", FunctionCache)(function)))
     finally:
         _settings.CACHE_DIR = before

@@ -1,6 +1,7 @@
 """Who is told that machine code is being made: the first call of a loop takes a while.
 
-Nothing here is printed; the command line puts its display into `displays`.
+Nothing here is printed; the command line puts its display into `displays` and
+`tellers`.
 """
 
 from __future__ import annotations
@@ -13,6 +14,16 @@ End = Callable[[], None]
 
 displays: list[Callable[[], End]] = []
 """Each is called when compilation begins, and gives what is to be called at its end."""
+
+
+tellers: list[Callable[[str], None]] = []
+"""Each is called with what a user should know of the machine code."""
+
+
+def tell(text: str) -> None:
+    """Pass a line on to those who show it."""
+    for teller in tellers:
+        teller(text)
 
 
 class Compilations:

@@ -17,10 +17,14 @@ from typing import Annotated
 import typer
 
 from costeer.cli.compiling import announce
+from costeer.cli.encoding import write_any_text
 from costeer.cli.errors import exit_code_of
 from costeer.cli.group import LazyGroup
 
 __all__ = ["app", "main"]
+
+
+DEBUG = "--debug"
 
 
 class CommandGroup(LazyGroup):
@@ -68,6 +72,10 @@ def costeer(
             help="Show the version.",
         ),
     ] = False,
+    debug: Annotated[
+        bool,
+        typer.Option(DEBUG, help="Show where an error came from."),
+    ] = False,
 ) -> None:
     """Intention-based haptic guidance steering: simulate, study, analyse.
 
@@ -77,13 +85,19 @@ def costeer(
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Run the command line; return its exit code: 0, 2 for bad input, 130 if stopped.
+    """Run the command line; return its exit code.
+
+    0; 2 for bad input, 70 for a mistake in costeer, 130 if stopped.
 
     Args:
         arguments: Words after `costeer`; those of the process if None.
     """
     words = sys.argv[1:] if arguments is None else arguments
+    if DEBUG in words:
+        words = [word for word in words if word != DEBUG]
+        os.environ["COSTEER_TRACEBACK"] = "1"
     _open_closed_streams()
+    write_any_text()
     announce()
     # It warns at length where the home folder cannot be written, then works.
     logging.getLogger("matplotlib").setLevel(logging.ERROR)

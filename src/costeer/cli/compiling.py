@@ -22,6 +22,7 @@ def announce() -> None:
     """Tell of every compilation from now on."""
     if _begun not in notice.displays:
         notice.displays.append(_begun)
+        notice.tellers.append(lambda text: note(f"costeer: {text}"))
 
 
 def _begun() -> notice.End:

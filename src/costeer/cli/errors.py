@@ -5,8 +5,10 @@ from __future__ import annotations
 import errno
 import os
 import sys
+import tempfile
 import traceback
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import typer
@@ -14,6 +16,9 @@ import typer
 from costeer.base.extras import LIBRARIES, install_command
 
 BAD_INPUT = 2
+MISTAKE = 70
+"""Exit code of a mistake in costeer, as in sysexits.h."""
+
 INTERRUPTED = 130
 
 _EXTRAS = {name: library.extra for library in LIBRARIES for name in library.modules}
@@ -23,33 +28,59 @@ _EXTRAS = {name: library.extra for library in LIBRARIES for name in library.modu
 def exit_code_of(run: Callable[[], object]) -> int:
     """Call `run`; turn what it raises into a line on stderr and an exit code.
 
-    Set COSTEER_TRACEBACK=1 to see where an error came from.
+    Bad input ends with `BAD_INPUT`; whatever else breaks, with `MISTAKE` and a file
+    that tells where. With --debug, or COSTEER_TRACEBACK=1, the traceback is shown too.
     """
     try:
         result = run()
     except (KeyboardInterrupt, typer.Abort):
         return _stopped()
-    except typer.TyperException as error:
-        return _refused(error, _usage(error))
-    except ModuleNotFoundError as error:
-        if error.name is None:  # raised by costeer itself, with the way out
-            return _refused(error, str(error))
-        if error.name not in _EXTRAS:
-            raise
-        return _refused(error, _missing_module(error.name))
-    except OSError as error:
-        return _refused(error, _system_error(error))
-    except ValueError as error:
-        return _refused(error, str(error))
+    except Exception as error:
+        return _ended(error)
     if result == INTERRUPTED:
         return _stopped()
     return result if isinstance(result, int) else 0
+
+
+def _ended(error: Exception) -> int:
+    """Say what a command ended with; return its exit code."""
+    if isinstance(error, typer.TyperException):
+        return _refused(error, _usage(error))
+    if isinstance(error, ModuleNotFoundError):
+        if error.name is None:  # raised by costeer itself, with the way out
+            return _refused(error, str(error))
+        if error.name in _EXTRAS:
+            return _refused(error, _missing_module(error.name))
+    if isinstance(error, OSError):
+        return _refused(error, _system_error(error))
+    if isinstance(error, ValueError):
+        return _refused(error, str(error))
+    if isinstance(error, MemoryError):
+        return _refused(error, "there is not enough memory for this; give it less")
+    return _mistake(error)
 
 
 def _stopped() -> int:
     """Say that the user stopped the command."""
     print("costeer: stopped", file=sys.stderr)
     return INTERRUPTED
+
+
+def _mistake(error: Exception) -> int:
+    """Name what broke, and write where it did into a file that can be sent."""
+    what = traceback.format_exception_only(error)[-1].strip()
+    words = " ".join(sys.argv[1:])
+    told = [f"costeer {words}", sys.version, sys.platform]
+    text = "\n".join([*told, *traceback.format_exception(error)])
+    try:
+        number, name = tempfile.mkstemp(prefix="costeer-error-", suffix=".txt")
+        os.close(number)
+        Path(name).write_text(text, encoding="utf-8", errors="replace")
+        where = f"please send {name}"
+    except OSError:
+        where = "run it again with --debug and send what it prints"
+    _refused(error, f"a mistake in costeer, not in your input: {what}; {where}")
+    return MISTAKE
 
 
 def _refused(error: Exception, message: str) -> int:

@@ -100,7 +100,8 @@ def _read_triggers(file: Path, measured: set[tuple[int, str]]) -> pd.DataFrame |
         return None
     table = _read_table(file)
     keys = zip(table["participant"], table["condition"], strict=True)
-    return table[[key in measured for key in keys]]
+    # An empty list would be taken for one of columns.
+    return table[np.array([key in measured for key in keys], dtype=bool)]
 
 
 def _read_table(file: Path) -> pd.DataFrame:
