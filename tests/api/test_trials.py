@@ -174,7 +174,7 @@ def test_a_study_takes_cars_drivers_and_predictors_as_objects(tmp_path: Path) ->
         ({"drivers": 5}, "driver is 5; give a name, a file NAME.yaml, or Driver"),
         ({"drivers": [CARS["large"]]}, "driver is CarParameters"),
         ({"predictor": 5}, "5 is no predictor"),
-        ({"predictor": 5, "intention": "scripted"}, "5 is no predictor"),
+        ({"predictor": 5, "intention": "scripted"}, "asks no predictor"),
         ({"weights": 5}, "weights is 5; give the name of a file"),
         ({"conditions": 5}, "conditions is 5; give names"),
         ({"driver": "a.yaml", "drivers": ["b.yaml"]}, "give one of them"),

@@ -19,7 +19,7 @@ def found_durations(planned: float, trials: int) -> np.ndarray:
     driver = with_value(true_driver(1), "decision.change_duration_spread", 0.0)
     driver = with_value(driver, "decision.change_duration", planned)
     found = []
-    for number in range(trials):
+    for number in range(1, trials + 1):
         columns = simulate(manual_setup(1), driver, number)
         drive = drive_of(TrialRecord({}, columns))
         paths = [path_duration(drive, c) for c in completed(drive, changes(drive))]

@@ -154,9 +154,6 @@ def test_the_same_numbers_of_another_kind_are_the_same_study() -> None:
     assert hash_of(whole) == hash_of(of_numpy) == hash_of(exact)
 
 
-def test_a_predictor_that_nobody_asks_has_its_name_in_the_hash_too() -> None:
-    def never(window: object) -> float:
-        return 0.0
-
-    about = study_configuration(settings_with(predictor=never))
-    assert about["predictor"] == "never"
+def test_a_predictor_that_nobody_asks_is_refused() -> None:
+    with pytest.raises(ValueError, match="intention 'scripted' asks no predictor"):
+        study_configuration(settings_with(predictor="line-time"))
