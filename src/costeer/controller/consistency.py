@@ -23,10 +23,15 @@ class ConsistencyParameters(NamedTuple):
             docs/decisions/0006-threshold.md.
         hold_time: A verdict that changes stays at least this long [s]. Source:
             paper, none; a literal Table III can chatter when a torque crosses zero.
+        hands_on_threshold: Least driver torque that disagrees, measured and beyond
+            what relaxed arms give [N·m]; 0 gives Table III as printed. Source:
+            assumed, above a torque sensor's noise; without it hands that rest on the
+            rim keep the gain at 0 for ever.
     """
 
     inconsistency_threshold: Real = 0.025
     hold_time: Real = 0.0
+    hands_on_threshold: Real = 0.1
 
 
 class ConsistencyState(NamedTuple):
@@ -94,6 +99,23 @@ def is_consistent(
 
 
 @compiled
+def pushes(
+    parameters: ConsistencyParameters, driver_torque: Real, own_torque: Real
+) -> Flag:
+    """Whether the driver does more than rest the hands on the wheel.
+
+    Args:
+        parameters: Hands-on threshold.
+        driver_torque: tau_dr [N·m].
+        own_torque: What relaxed arms do not explain of it (controller/hands.py) [N·m].
+    """
+    least = parameters.hands_on_threshold
+    turns = (driver_torque >= least) | (driver_torque <= -least)
+    wants = (own_torque >= least) | (own_torque <= -least)
+    return turns & wants
+
+
+@compiled
 def step(
     parameters: ConsistencyParameters,
     state: ConsistencyState,
@@ -101,19 +123,21 @@ def step(
     driver_torque: Real,
     heading_error_rate: Real,
     dt: Real,
+    own_torque: Real = math.inf,
 ) -> tuple[ConsistencyState, Consistency]:
-    """Advance both windows by one sample and judge.
+    """Advance both windows by one sample and judge: nobody disagrees without pushing.
 
     Without a finite torque of both there is no new verdict: the last one stays, so
     that a lost sample does not start a fade anew.
 
     Args:
-        parameters: δ and hold time.
+        parameters: δ, hold time, hands-on threshold.
         state: Windows and last verdict.
         instructed_torque: tau_hapi, before gain, strength and limit [N·m].
         driver_torque: tau_dr [N·m].
         heading_error_rate: e_theta' [rad/s].
         dt: Control step [s].
+        own_torque: What relaxed arms do not explain of tau_dr [N·m].
     """
     guidance_power = push(
         state.guidance_power, power(instructed_torque, heading_error_rate)
@@ -123,10 +147,11 @@ def step(
     guidance_work = xp.select(ready, mean(guidance_power), math.nan)
     driver_work = xp.select(ready, mean(driver_power), math.nan)
     agreement = torque_agreement(instructed_torque, driver_torque)
-    literal = is_consistent(parameters, guidance_work, driver_work, agreement)
+    printed = is_consistent(parameters, guidance_work, driver_work, agreement)
+    resting = xp.logical_not(pushes(parameters, driver_torque, own_torque))
     held = state.time_in_verdict < parameters.hold_time - dt / 2.0
     unknown = xp.logical_not(xp.isfinite(agreement))
-    consistent = xp.select(held | unknown, state.consistent, literal)
+    consistent = xp.select(held | unknown, state.consistent, printed | resting)
     switched = consistent != state.consistent
     new_state = ConsistencyState(
         guidance_power=guidance_power,

@@ -32,6 +32,8 @@ class GuidanceParameters(NamedTuple):
             Source: assumed, hands-off runs; 0.3 hunts by 0.09 m at 50 km/h.
         friction_rate_weight: Weight of the planned damping torque in the direction of
             the friction [-]. Source: assumed.
+        steering_gain_speed: Up to here K_theta is as given; above it rises with the
+            square of the speed [m/s]. Source: assumed, 80 km/h; see `at_speed`.
     """
 
     lateral_error_gain: Real = 1.5
@@ -40,6 +42,27 @@ class GuidanceParameters(NamedTuple):
     slip_angle_gain: Real = 0.45 * 0.6 * 0.026 * 110e3 / 16.0
     friction_smoothing: Real = 0.2
     friction_rate_weight: Real = 4.0
+    steering_gain_speed: Real = 80.0 / 3.6
+
+
+@compiled
+def at_speed(parameters: GuidanceParameters, speed: Real) -> GuidanceParameters:
+    """The gains at a speed: K_theta rises above `steering_gain_speed`.
+
+    The error at the preview point grows with the speed (T_p v times the heading error),
+    and so does the car's answer to the wheel; K_theta, which resists turning the wheel
+    away from the plan, has to grow along. With a constant one the large car swings at
+    110 km/h, most of all with hands on the wheel, whose inertia is then part of the
+    column (docs/stability.md).
+
+    Args:
+        parameters: With K_theta.
+        speed: Of the car [m/s].
+    """
+    usual = parameters.steering_gain_speed
+    share = xp.maximum(speed, usual) / usual
+    gain = parameters.steering_angle_gain * share * share
+    return parameters._replace(steering_angle_gain=gain)
 
 
 @compiled

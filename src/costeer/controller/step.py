@@ -10,6 +10,7 @@ from costeer.controller import (
     actuation,
     consistency,
     guidance,
+    hands,
     inference,
     preview,
     replanning,
@@ -19,11 +20,13 @@ from costeer.controller import (
 from costeer.controller.actuation import ActuationParameters, ActuationState
 from costeer.controller.consistency import ConsistencyParameters, ConsistencyState
 from costeer.controller.guidance import GuidanceParameters
+from costeer.controller.hands import HandsParameters, HandsState
 from costeer.controller.inference import InferenceParameters, InferenceState
 from costeer.controller.preview import PreviewParameters
 from costeer.controller.replanning import ReplanningParameters
 from costeer.controller.signals import (
     Assistance,
+    Consistency,
     Guidance,
     Intention,
     Preview,
@@ -48,6 +51,7 @@ class ControllerParameters(NamedTuple):
         preview: Preview time [SI units]. Source: Fig. 4.
         guidance: Gains [SI units]. Source: Eq. (5).
         consistency: Threshold [SI units]. Source: Table III.
+        hands: Relaxed arms [SI units]. Source: controller/hands.py.
         strength: Fade [SI units]. Source: Eqs. (10) and (11).
         replanning: When to plan anew [SI units]. Source: Sec. II-E.
         actuation: Strength and limits [SI units]. Source: Eq. (6), Table IV.
@@ -61,6 +65,7 @@ class ControllerParameters(NamedTuple):
     preview: PreviewParameters = PreviewParameters()
     guidance: GuidanceParameters = GuidanceParameters()
     consistency: ConsistencyParameters = ConsistencyParameters()
+    hands: HandsParameters = HandsParameters()
     strength: StrengthParameters = StrengthParameters()
     replanning: ReplanningParameters = ReplanningParameters()
     actuation: ActuationParameters = ActuationParameters()
@@ -73,6 +78,7 @@ class ControllerState(NamedTuple):
         inference: Trigger and lock.
         trajectory: Mode and plan.
         consistency: Pseudo-work windows.
+        hands: The wheel at the step before.
         strength: Fade.
         actuation: Last torque.
         replan: Whether the step before called for a new plan.
@@ -81,6 +87,7 @@ class ControllerState(NamedTuple):
     inference: InferenceState
     trajectory: TrajectoryState
     consistency: ConsistencyState
+    hands: HandsState
     strength: StrengthState
     actuation: ActuationState
     replan: Flag
@@ -93,6 +100,7 @@ def initial_state(parameters: ControllerParameters, lane: Real) -> ControllerSta
         inference=inference.initial_state(),
         trajectory=trajectory.initial_state(parameters.road, lane),
         consistency=consistency.initial_state(),
+        hands=hands.initial_state(),
         strength=strength.initial_state(),
         actuation=actuation.initial_state(),
         replan=False,
@@ -147,10 +155,32 @@ def instruct(
 ) -> tuple[Preview, Guidance]:
     """Errors at the preview point and the torques they call for."""
     errors = preview.preview(parameters.preview, parameters.car, target, measurement)
-    torques = guidance.guide(
-        parameters.guidance, parameters.car, parameters.column, errors
-    )
+    gains = guidance.at_speed(parameters.guidance, measurement.longitudinal_velocity)
+    torques = guidance.guide(gains, parameters.car, parameters.column, errors)
     return errors, torques
+
+
+@compiled
+def judge(
+    parameters: ControllerParameters,
+    state: ControllerState,
+    measurement: Measurement,
+    errors: Preview,
+    torques: Guidance,
+    dt: Real,
+) -> tuple[HandsState, ConsistencyState, Consistency]:
+    """Whether driver and system want the same path."""
+    hands_state, own_torque = hands.step(parameters.hands, state.hands, measurement, dt)
+    consistency_state, verdict = consistency.step(
+        parameters.consistency,
+        state.consistency,
+        torques.instructed_torque,
+        measurement.driver_torque,
+        errors.heading_error_rate,
+        dt,
+        own_torque,
+    )
+    return hands_state, consistency_state, verdict
 
 
 @compiled
@@ -174,13 +204,8 @@ def step(
         parameters, state, measurement, request, dt
     )
     errors, torques = instruct(parameters, target, measurement)
-    consistency_state, verdict = consistency.step(
-        parameters.consistency,
-        state.consistency,
-        torques.instructed_torque,
-        measurement.driver_torque,
-        errors.heading_error_rate,
-        dt,
+    hands_state, consistency_state, verdict = judge(
+        parameters, state, measurement, errors, torques, dt
     )
     strength_state, gain = strength.step(
         parameters.strength, state.strength, verdict.consistent, dt
@@ -194,6 +219,7 @@ def step(
         inference=inference_state,
         trajectory=trajectory_state,
         consistency=consistency_state,
+        hands=hands_state,
         strength=strength_state,
         actuation=actuation_state,
         replan=replan,

@@ -18,7 +18,7 @@ from costeer.base.packing import pack, packed, unpack
 from costeer.loop.jax_rollout import jax_rollout
 from costeer.loop.parameters import LoopParameters
 from costeer.loop.rows import LoopRule, loop_rule, writer_of
-from costeer.loop.step import initial_state
+from costeer.loop.step import LoopState, initial_state
 from costeer.loop.tick import Network, Script, run
 from costeer.methods.interface import (
     Method,
@@ -77,6 +77,7 @@ def begun(
     parameters: LoopParameters[P],
     network: Network,
     engine: str = "numba",
+    start: LoopState[S] | None = None,
 ) -> Advance:
     """A trial at its start, and the function that runs it on.
 
@@ -85,12 +86,13 @@ def begun(
         parameters: Of the trial.
         network: Of the intention, changed in place.
         engine: "numba" or "python".
+        start: State that it starts from, if not the usual one.
 
     Raises:
         ValueError: If the engine is not known; when it is called, also if the method
             cannot be compiled.
     """
-    state = initial_state(rule_of(method), parameters)
+    state = start or initial_state(rule_of(method), parameters)
     if engine == "python":
         return _in_python(method, parameters, state, network)
     if engine != "numba":

@@ -1,9 +1,11 @@
 """The linear loop of driver and car about straight driving, for many drivers at once.
 
-Its matrix is made of central differences of the very functions of a control step, as
-in validation/linear.py: no second derivation can go wrong. Noise and dry friction are
-left out; the wander of the aim does not depend on the car and adds no eigenvalue to
-look at.
+With a gain the guidance is in it too: driver and guidance hold one wheel. Its matrix is
+made of central differences of the very functions of a control step, as in
+validation/linear.py: no second derivation can go wrong. Noise and dry friction are left
+out; the wander of the aim does not depend on the car and adds no eigenvalue to look
+at. What a driver leaves to agreeing guidance has no slope at rest, so that here drivers
+rely on none.
 """
 
 from __future__ import annotations
@@ -14,11 +16,16 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from costeer.base.array import Real
+from costeer.controller import step as controller
+from costeer.controller import trajectory
 from costeer.drivers.driver import NORMAL_DRAWS, DriverNoise, DriverParameters
 from costeer.loop.parameters import DT, LoopParameters
 from costeer.loop.step import LoopState, drive, initial_state, move, sense
 from costeer.methods.interface import rule_of
 from costeer.methods.manual import MANUAL
+from costeer.plant.road import cruising_lane
+from costeer.sensing.measurement import Measurement
 
 Signal = NDArray[np.float64]
 Spectrum = NDArray[np.complex128]
@@ -30,13 +37,15 @@ STATES = (
     "yaw_rate",
     "steering_wheel_angle",
     "steering_wheel_rate",
+    "motor_torque",
+    "torque_command",
     "seen",
     "lagged",
     "equilibrium",
     "felt",
     "reflex",
 )
-"""What car, wheel, eyes and arms remember about straight driving."""
+"""What car, wheel, motor, eyes and arms remember about straight driving."""
 
 SLOWEST_SWING = 0.5
 """Slower motion than this is drift, not a swing [rad/s]."""
@@ -75,27 +84,53 @@ def _displaced(parameters: LoopParameters[Any], x: Signal) -> LoopState[Any]:
         lateral_position=aim + at["lateral_position"],
         **{name: at[name] for name in STATES[1:4]},
     )
-    wheel = state.world.column._replace(**{name: at[name] for name in STATES[4:6]})
+    wheel = state.world.column._replace(**{name: at[name] for name in STATES[4:7]})
+    command = state.control._replace(torque_command=at["torque_command"])
     eyes = state.driver.vision._replace(delayed=at["seen"], lagged=at["lagged"])
     arms = hands._replace(
         equilibrium=at["equilibrium"], delayed=at["felt"], reflex=at["reflex"]
     )
     return state._replace(
+        control=command,
         world=state.world._replace(vehicle=moved, column=wheel),
         driver=state.driver._replace(vision=eyes, arm=arms),
     )
 
 
-def _after_a_step(parameters: LoopParameters[Any], x: Signal) -> Signal:
+def instructed_torque(
+    parameters: LoopParameters[Any], measurement: Measurement, aim: Real
+) -> Real:
+    """Guidance torque before the gain, where the driver's aim is the lane's centre.
+
+    Args:
+        parameters: Of a trial of the paper's method.
+        measurement: This step's sample.
+        aim: Distance of the driver's aim from the lane's centre [m].
+    """
+    road = parameters.road
+    at = measurement._replace(lateral_position=measurement.lateral_position - aim)
+    keeping = trajectory.initial_state(road, cruising_lane(road))
+    target = trajectory.target(keeping, road, at)
+    _, torques = controller.instruct(parameters.controller, target, at)
+    return torques.instructed_torque
+
+
+def _after_a_step(parameters: LoopParameters[Any], x: Signal, gain: Real) -> Signal:
     """`STATES` one control step after `x`, up to the place of the aim."""
     state = _displaced(parameters, x)
     noise = DriverNoise(*quiet(1)[0].tolist())
-    driver, action = drive(parameters, state, sense(parameters, state), noise)
+    measurement = sense(parameters, state)
+    driver, action = drive(parameters, state, measurement, noise)
+    command: Any = 0.0  # Any: a number, or an array of them
+    if gain > 0.0:
+        aim = parameters.driver.tracking.lane_bias
+        command = gain * instructed_torque(parameters, measurement, aim)
     world, hands = move(parameters, state, action)
     vehicle, wheel, eyes = world.vehicle, world.column, driver.vision
     values = (
         *(getattr(vehicle, name) for name in STATES[:4]),
-        *(getattr(wheel, name) for name in STATES[4:6]),
+        *(getattr(wheel, name) for name in STATES[4:7]),
+        command,
         *(eyes.delayed, eyes.lagged),
         *(hands.equilibrium, hands.delayed, hands.reflex),
     )
@@ -103,21 +138,26 @@ def _after_a_step(parameters: LoopParameters[Any], x: Signal) -> Signal:
 
 
 def transition(
-    parameters: LoopParameters[Any], drivers: Sequence[DriverParameters]
+    parameters: LoopParameters[Any],
+    drivers: Sequence[DriverParameters],
+    gain: Real = 0.0,
 ) -> Signal:
     """Matrix of one control step about straight driving for each driver.
 
     Args:
-        parameters: Of a manual trial; its driver is left out.
+        parameters: Of a trial, of the paper's method if there is a gain; its driver is
+            left out.
         drivers: Who holds the wheel.
+        gain: K_h times the strength factor; 0 is manual driving [-].
 
     Returns:
         Shape `(driver, state, state)`, in the order of `STATES`.
     """
-    every = smooth(parameters)._replace(driver=_stacked(drivers))
+    alone = [d._replace(reliance=d.reliance._replace(reliance=0.0)) for d in drivers]
+    every = smooth(parameters)._replace(driver=_stacked(alone))
     steps = _STEP * np.concatenate([np.eye(len(STATES)), -np.eye(len(STATES))])
     tried = np.broadcast_to(steps, (len(drivers), *steps.shape))
-    ahead, back = np.split(_after_a_step(every, tried), 2, axis=1)
+    ahead, back = np.split(_after_a_step(every, tried, gain), 2, axis=1)
     return np.swapaxes((ahead - back) / (2.0 * _STEP), 1, 2)
 
 
