@@ -11,11 +11,11 @@ import pylsl
 class FakeOutlet:
     """An outlet of the lab streaming layer with labels and units."""
 
-    def __init__(self, channels: Sequence[tuple[str, str]]) -> None:
+    def __init__(self, channels: Sequence[tuple[str, str]], name: str = "") -> None:
         """Open it under a name of its own; `channels` are pairs of label and unit."""
-        self.name = f"tracker-{uuid4().hex}"
+        self.name = name or f"tracker-{uuid4().hex}"
         info = pylsl.StreamInfo(
-            self.name, "Gaze", len(channels), 60.0, pylsl.cf_double64, self.name
+            self.name, "Gaze", len(channels), 60.0, pylsl.cf_double64, uuid4().hex
         )
         parent = info.desc().append_child("channels")
         for label, unit in channels:

@@ -134,6 +134,10 @@ def test_a_missing_calibration_says_how_to_make_it(tmp_path: Path) -> None:
         {"version": 2},
         {"gain": None},
         {"gain": math.nan},
+        {"gain": 0.0},
+        {"gain": 9e18},
+        {"gain": -1.0},
+        {"offset": 3.0},
         {"tracker": {"camera": 1}},
         {"tracker": 3},
         {"height": 1.8},
@@ -144,6 +148,13 @@ def test_a_damaged_file_is_refused(tmp_path: Path, change: dict[str, object]) ->
     stored = json.loads(path.read_text("utf-8"))
     path.write_text(json.dumps(stored | change), encoding="utf-8")
     with pytest.raises(ValueError, match="not a calibration of this costeer"):
+        load_calibration("P01", tmp_path)
+
+
+def test_a_file_of_another_participant_is_refused(tmp_path: Path) -> None:
+    path = save_calibration(HeadCalibration("P02", WEBCAM), tmp_path)
+    path.rename(path.with_name("P01.json"))
+    with pytest.raises(ValueError, match="is of participant P02, not of P01; run"):
         load_calibration("P01", tmp_path)
 
 

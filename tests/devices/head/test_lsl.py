@@ -94,6 +94,26 @@ def test_samples_travel_from_an_outlet_with_their_time() -> None:
         tracker.close()
 
 
+def test_two_streams_of_one_name_are_refused() -> None:
+    one = FakeOutlet([("Head Yaw", "deg")])
+    other = FakeOutlet([("Head Yaw", "deg")], one.name)
+    assert other.name == one.name
+    with pytest.raises(ValueError, match=f"2 LSL streams are called '{one.name}'"):
+        LslTracker(HeadDescription("lsl", one.name))
+
+
+def test_samples_that_another_clock_has_stamped_are_refused() -> None:
+    outlet = FakeOutlet([("Head Yaw", "deg")])
+    tracker = LslTracker(HeadDescription("lsl", outlet.name))
+    try:
+        tracker.read()
+        outlet.send(5.0, age=-1.7e9)  # of the Unix clock
+        with pytest.raises(HeadLost, match="stamps its samples with another clock"):
+            read_until_new(tracker, -math.inf)
+    finally:
+        tracker.close()
+
+
 def test_a_stream_that_is_not_there_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(lsl, "FIND_WITHIN", 0.2)
     with pytest.raises(HeadLost, match="no LSL stream 'no such tracker'"):

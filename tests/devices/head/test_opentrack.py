@@ -7,6 +7,7 @@ import socket
 import struct
 from collections.abc import Iterator
 
+import numpy as np
 import pytest
 
 from costeer.devices.head.opentrack import Opentrack, packet_yaw, parse_address
@@ -90,6 +91,25 @@ def test_a_packet_that_cannot_be_is_refused(source: Opentrack, bad: bytes) -> No
     assert source.read() == before
     assert source.refused == 1
     assert packet_yaw(bad) is None
+
+
+NUMBERS = (1.7, -3.2, 61.4, 12.3, -4.5, 0.9)
+
+
+@pytest.mark.parametrize(
+    "bad", [struct.pack(">6d", *NUMBERS), struct.pack("<12f", *NUMBERS, *NUMBERS)]
+)
+def test_bytes_in_another_order_or_size_of_number_are_refused(bad: bytes) -> None:
+    assert packet_yaw(bad) is None
+
+
+def test_packets_of_true_numbers_are_believed() -> None:
+    draw = np.random.default_rng(1)
+    sent = draw.normal(scale=(5.0, 5.0, 60.0, 20.0, 10.0, 5.0), size=(20_000, 6))
+    yaws = [packet_yaw(struct.pack("<6d", *each)) for each in sent.tolist()]
+    assert yaws.count(None) <= 4  # of 20,000; each half looks single one time in eleven
+    assert packet_yaw(struct.pack("<6d", *[0.0] * 6)) == 0.0
+    assert packet_yaw(struct.pack("<6d", 1, 2, 60, 15, -3, 0)) == math.radians(15)
 
 
 def test_it_listens_on_this_computer_only(source: Opentrack) -> None:

@@ -206,12 +206,18 @@ def load_calibration(participant: str, folder: Path | None = None) -> HeadCalibr
             f"head calibrate --participant {participant}"
         )
     try:
-        return _parsed(json.loads(path.read_text(encoding="utf-8")))
+        found = _parsed(json.loads(path.read_text(encoding="utf-8")))
     except (ValueError, TypeError, KeyError, AttributeError) as error:
         raise ValueError(
             f"{path} is not a calibration of this costeer ({error}); run: costeer head "
             f"calibrate --participant {participant}"
         ) from error
+    if found.participant != participant:
+        raise ValueError(
+            f"{path} is of participant {found.participant}, not of {participant}; run: "
+            f"costeer head calibrate --participant {participant}"
+        )
+    return found
 
 
 def _parsed(content: dict[str, Any]) -> HeadCalibration:  # Any: JSON
@@ -228,4 +234,12 @@ def _parsed(content: dict[str, Any]) -> HeadCalibration:  # Any: JSON
     numbers = [float(n) for n in (found.offset, found.gain, found.misfit)]
     if not all(map(math.isfinite, numbers)):
         raise ValueError("its numbers are not finite")
+    usual = FitParameters()
+    if not usual.least_gain <= found.gain <= usual.largest_gain:
+        raise ValueError(
+            f"its gain is {found.gain:g}, outside {usual.least_gain:g} to "
+            f"{usual.largest_gain:g}"
+        )
+    if abs(found.offset) > math.pi / 2.0:
+        raise ValueError(f"its offset is {math.degrees(found.offset):g} deg")
     return HeadCalibration(found.participant, tracker, *numbers)

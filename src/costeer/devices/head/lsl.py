@@ -126,6 +126,13 @@ def sample_yaw(chosen: Layout, sample: Sequence[float]) -> float | None:
     return yaw if seen else None
 
 
+MOST_APART = 60.0
+"""A sample from farther away in time was stamped by no clock of LSL [s]."""
+
+FIND_OTHERS = 1.0
+"""How long is looked for a second stream of the name [s]."""
+
+
 class LslTracker:
     """Reads the newest sample of a stream; its clock is brought to this computer's."""
 
@@ -183,8 +190,19 @@ class LslTracker:
         return aged(self._last, self._clock())
 
     def _take(self, sample: Sequence[float], stamp: float) -> None:
-        """Keep a sample that was stamped by the sender's clock [s]."""
+        """Keep a sample that was stamped by the sender's clock [s].
+
+        Raises:
+            HeadLost: If that is no clock of LSL.
+        """
         seen = self._epoch + stamp + self._inlet.time_correction()
+        apart = seen - self._clock()
+        if abs(apart) > MOST_APART:
+            raise HeadLost(
+                f"the stream stamps its samples with another clock, {apart:.3g} s from "
+                "this one; let its outlet stamp them (push_sample without a time), or "
+                "with pylsl.local_clock()"
+            )
         yaw = sample_yaw(self._layout, sample)
         self._last = HeadReading(
             time=min(seen, self._clock()),
@@ -204,6 +222,13 @@ def _inlet(name: str) -> Any:  # Any: pylsl ships no types
     found = pylsl.resolve_byprop("name", name, 1, FIND_WITHIN)
     if not found:
         raise _absent(name)
+    every = pylsl.resolve_byprop("name", name, 2, FIND_OTHERS)
+    if len(every) > 1:
+        hosts = ", ".join(sorted(each.hostname() for each in every))
+        raise ValueError(
+            f"{len(every)} LSL streams are called {name!r}, on {hosts}; give each a "
+            "name of its own, or stop those that are not meant"
+        )
     if found[0].channel_format() == pylsl.cf_string:
         raise ValueError(
             f"stream {name!r} sends text, not angles; choose another --lsl"

@@ -17,6 +17,15 @@ WAIT = 0.05
 _PACKET = struct.Struct("<6d")
 """x, y, z [cm], yaw, pitch, roll [deg]."""
 
+_HALVES = struct.Struct("<12f")
+"""The same bytes as numbers of single precision."""
+
+_SMALLEST, _LARGEST = 1e-12, 1e4
+_SINGLE_SMALLEST = 1e-3
+_MOST_SINGLES = 5
+"""So many halves of six true numbers do not look like numbers by chance: each of them
+does in one of twelve."""
+
 _MOST_PACKETS = 1000
 """Packets read at a time: a flood does not hold up the reader."""
 
@@ -97,9 +106,21 @@ def packet_yaw(packet: bytes) -> float | None:
         return None
     numbers = _PACKET.unpack(packet)
     yaw_deg = numbers[3]
-    if not all(map(math.isfinite, numbers)) or abs(yaw_deg) > 180.0:
+    if abs(yaw_deg) > 180.0 or not all(map(_is_measured, numbers)):
+        return None
+    if sum(map(_is_single, _HALVES.unpack(packet)[::2])) >= _MOST_SINGLES:
         return None
     return math.radians(yaw_deg)
+
+
+def _is_measured(number: float) -> bool:
+    """Whether a tracker can have measured it; bytes in another order give no such."""
+    return number == 0.0 or _SMALLEST < abs(number) < _LARGEST
+
+
+def _is_single(number: float) -> bool:
+    """Whether half of a number looks like one of single precision, by itself."""
+    return _SINGLE_SMALLEST < abs(number) < _LARGEST
 
 
 def parse_address(address: str) -> tuple[str, int]:
