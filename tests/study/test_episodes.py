@@ -132,3 +132,15 @@ def test_the_gain_to_replan_at_is_the_records_own(material: StudyMaterial) -> No
     metadata = ({"replan_gain": None}, {"replan_gain": 0.1})
     assert replan_gain(material._replace(metadata=metadata)) == 0.1
     assert replan_gain(material._replace(metadata=())) == REPLAN_GAIN
+
+
+def test_lines_are_told_apart_without_colour(material: StudyMaterial) -> None:
+    episode = exemplary_inconsistency(material.records, REPLAN_GAIN)
+    assert episode is not None
+    with styled():
+        figure = inconsistency.draw(episode).figure
+    assert figure is not None
+    for panel in figure.axes:
+        lines, _ = panel.get_legend_handles_labels()
+        styles = [line.get_linestyle() for line in lines]
+        assert len(styles) == len(set(styles))

@@ -101,9 +101,9 @@ def _description(episode: Episode) -> str:
 def _torques(axes: Axes, time: NDArray[np.float64], episode: Episode) -> None:
     columns = episode.columns
     lines = {
-        "driver": (columns["driver_torque"], SIGNAL_COLOURS["driver"], "-"),
+        "driver": (columns["driver_torque"], SIGNAL_COLOURS["driver"], "-."),
         "guidance": (columns["instructed_torque"], SIGNAL_COLOURS["guidance"], "-"),
-        "applied": (columns["applied_torque"], SIGNAL_COLOURS["guidance"], "--"),
+        "applied": (columns["applied_torque"], SIGNAL_COLOURS["guidance"], ":"),
     }
     _lines(axes, time, lines)
     _zero(axes)
@@ -113,7 +113,7 @@ def _torques(axes: Axes, time: NDArray[np.float64], episode: Episode) -> None:
 def _pseudo_works(axes: Axes, time: NDArray[np.float64], episode: Episode) -> None:
     columns = episode.columns
     lines = {
-        "driver": (columns["driver_pseudo_work"], SIGNAL_COLOURS["driver"], "-"),
+        "driver": (columns["driver_pseudo_work"], SIGNAL_COLOURS["driver"], "-."),
         "guidance": (columns["guidance_pseudo_work"], SIGNAL_COLOURS["guidance"], "-"),
     }
     _lines(axes, time, lines)
