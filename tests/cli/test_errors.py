@@ -12,6 +12,7 @@ from pathlib import Path
 import pytest
 import typer
 
+from costeer.__main__ import run
 from costeer.cli import main
 from costeer.cli.errors import exit_code_of
 
@@ -219,3 +220,35 @@ def test_a_home_that_cannot_be_written_is_no_news() -> None:
         check=True,
     )
     assert told.stderr == ""
+
+
+def test_an_interruption_anywhere_ends_with_130() -> None:
+    # Through `exec` of text, as in Numba: Python would end by SIGINT.
+    program = (
+        "import sys\n"
+        "from costeer.cli.errors import exit_code_of\n"
+        "sys.exit(exit_code_of(lambda: exec('raise KeyboardInterrupt')))\n"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", program], capture_output=True, text=True, check=False
+    )
+    assert (done.returncode, done.stderr) == (130, "costeer: stopped\n")
+
+
+def test_an_interruption_while_starting_is_one_line(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def stopped() -> int:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("costeer.cli.main", stopped)
+    assert run() == 130
+    assert capsys.readouterr().err == "costeer: stopped\n"
+
+
+def test_without_a_compiler_it_says_so(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setenv("NUMBA_DISABLE_JIT", "1")
+    assert main(["doctor"]) == 2
+    assert "NUMBA_DISABLE_JIT is set" in capsys.readouterr().err

@@ -18,7 +18,7 @@ import typer
 
 from costeer.cli.compiling import announce
 from costeer.cli.encoding import write_any_text
-from costeer.cli.errors import exit_code_of
+from costeer.cli.errors import BAD_INPUT, exit_code_of
 from costeer.cli.group import LazyGroup
 
 __all__ = ["app", "main"]
@@ -102,6 +102,13 @@ def main(arguments: list[str] | None = None) -> int:
     # It warns at length where the home folder cannot be written, then works.
     logging.getLogger("matplotlib").setLevel(logging.ERROR)
     command = typer.main.get_command(app)
+    if os.environ.get("NUMBA_DISABLE_JIT", "0") not in ("", "0"):
+        print(
+            "costeer: NUMBA_DISABLE_JIT is set, and costeer needs compiled code; unset "
+            "it",
+            file=sys.stderr,
+        )
+        return BAD_INPUT
     return exit_code_of(
         lambda: command.main(
             words or ["--help"], prog_name="costeer", standalone_mode=False

@@ -62,6 +62,9 @@ def _ended(error: Exception) -> int:
 
 def _stopped() -> int:
     """Say that the user stopped the command."""
+    # A KeyboardInterrupt that has passed through `exec`, as in Numba, makes Python end
+    # by SIGINT although it was caught; the next `exec` forgets it.
+    exec("")
     print("costeer: stopped", file=sys.stderr)
     return INTERRUPTED
 
