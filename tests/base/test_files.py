@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from costeer.base.files import prepare_folder, replacing, write_text
+from costeer.base.files import prepare_folder, read_whole, replacing, write_text
 
 
 def test_a_file_is_replaced_whole_and_nothing_else_is_left(tmp_path: Path) -> None:
@@ -32,6 +32,19 @@ def test_a_write_that_fails_leaves_the_old_file(tmp_path: Path) -> None:
     with pytest.raises(OSError, match="No space"):
         write_half()
     assert [path.read_text() for path in tmp_path.iterdir()] == ["old"]
+
+
+def test_what_might_never_end_is_not_read(tmp_path: Path) -> None:
+    (tmp_path / "table").write_bytes(b"12345")
+    assert read_whole(tmp_path / "table", 5) == b"12345"
+    with pytest.raises(ValueError, match=r"table has 5e-06 MB, at most 4e-06 MB"):
+        read_whole(tmp_path / "table", 4)
+    os.mkfifo(tmp_path / "pipe")
+    for path in (tmp_path / "pipe", Path("/dev/zero")):
+        with pytest.raises(ValueError, match="is a device or a pipe; give a file"):
+            read_whole(path)
+    with pytest.raises(IsADirectoryError):
+        read_whole(tmp_path)
 
 
 def test_a_folder_of_other_things_is_refused_and_left_alone(tmp_path: Path) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import stat
 from collections.abc import Collection, Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -44,6 +45,28 @@ def _synchronise(path: Path) -> None:
         os.fsync(descriptor)
     finally:
         os.close(descriptor)
+
+
+def read_whole(path: Path, most: int = 4_000_000_000) -> bytes:
+    """The content of a file, refused if reading it might never end.
+
+    Args:
+        path: Of the file.
+        most: Largest size [bytes].
+
+    Raises:
+        ValueError: If it is a device, a pipe or a socket, or is too large.
+        OSError: If it cannot be read.
+    """
+    about = path.stat()
+    if not (stat.S_ISREG(about.st_mode) or stat.S_ISDIR(about.st_mode)):
+        raise ValueError(f"{path} is a device or a pipe; give a file")
+    if about.st_size > most:
+        raise ValueError(
+            f"{path} has {about.st_size / 1e6:.4g} MB, at most {most / 1e6:.4g} MB are "
+            "read; give a smaller file"
+        )
+    return path.read_bytes()
 
 
 def write_text(path: Path, text: str) -> None:

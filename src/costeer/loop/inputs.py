@@ -15,7 +15,7 @@ import yaml
 
 from costeer.base.array import Real
 from costeer.base.described import described, with_values
-from costeer.base.files import write_text
+from costeer.base.files import read_whole, write_text
 from costeer.drivers.driver import DriverParameters
 from costeer.plant.parameters import CARS, CarParameters
 
@@ -46,10 +46,9 @@ def read_values(path: Path) -> dict[str, Real]:
         ValueError: If it is no YAML mapping of numbers.
         OSError: If it cannot be read.
     """
-    if path.stat().st_size > _MOST:
-        raise ValueError(f"{path} is larger than 1 MB; give a file of parameters")
+    text = read_whole(path, _MOST)
     try:
-        content = yaml.load(path.read_text(encoding="utf-8"), _Words)
+        content = yaml.load(text.decode("utf-8"), _Words)
     except (yaml.YAMLError, UnicodeDecodeError, RecursionError) as error:
         first = str(error).partition("\n")[0]
         raise ValueError(f"{path} is not YAML: {first}") from error

@@ -15,6 +15,7 @@ from typing import Any, NamedTuple, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
+from costeer.base.files import read_whole
 from costeer.base.plugins import advertised, is_place, load_object, refuse_twin
 from costeer.base.sources import plain, source_hash
 from costeer.intention.features import NUM_FEATURES, WINDOW_LENGTH
@@ -176,7 +177,7 @@ def _onnx(path: Path, _: tuple[int, int]) -> ChosenPredictor:
     Raises:
         ValueError: If it does not take windows of the six signals.
     """
-    content = path.read_bytes()
+    content = read_whole(path)
     try:
         import onnxruntime
     except ModuleNotFoundError as error:
