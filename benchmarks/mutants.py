@@ -1,0 +1,165 @@
+"""Faults put into the code that keeps people safe: does a test notice each?
+
+    python -m benchmarks.mutants [NUMBER]
+
+Takes NUMBER (60) places at random of the torque guard, the watchdog, the limits, the
+verdict and the server's checks, changes one thing in each (a comparison, an operator, a
+number, min or max, and or or, a flag), and runs the tests of that file. Prints what
+survived and the score. Exit code 1 below 95 %.
+"""
+
+from __future__ import annotations
+
+import ast
+import copy
+import os
+import random
+import shutil
+import subprocess
+import sys
+import tempfile
+from collections.abc import Iterator
+from pathlib import Path
+from typing import NamedTuple
+
+ROOT = Path(__file__).parents[1]
+PACKAGE = ROOT / "src" / "costeer"
+SEED = 1
+WANTED = 0.95
+
+TESTS = {
+    "runtime/guard.py": ["tests/runtime/test_guard.py"],
+    "runtime/watchdog.py": ["tests/runtime/test_watchdog.py"],
+    "web/security.py": ["tests/web/test_security.py"],
+    "controller/actuation.py": ["tests/controller/test_actuation.py", "tests/paper"],
+    "controller/consistency.py": [
+        "tests/controller/test_consistency.py",
+        "tests/controller/test_hands.py",
+        "tests/paper",
+    ],
+    "controller/hands.py": ["tests/controller/test_hands.py"],
+}
+"""What is changed, and the tests that should see it."""
+
+COMPARISONS = {
+    ast.Lt: ast.GtE,
+    ast.LtE: ast.Gt,
+    ast.Gt: ast.LtE,
+    ast.GtE: ast.Lt,
+    ast.Eq: ast.NotEq,
+    ast.NotEq: ast.Eq,
+    ast.In: ast.NotIn,
+    ast.NotIn: ast.In,
+    ast.Is: ast.IsNot,
+    ast.IsNot: ast.Is,
+}
+OPERATORS = {ast.Add: ast.Sub, ast.Sub: ast.Add, ast.Mult: ast.Div, ast.Div: ast.Mult}
+OPERATORS |= {ast.BitAnd: ast.BitOr, ast.BitOr: ast.BitAnd}
+NAMES = {"min": "max", "max": "min", "all": "any", "any": "all"}
+NAMES |= {"minimum": "maximum", "maximum": "minimum"}
+
+
+class Mutant(NamedTuple):
+    """One changed file.
+
+    Attributes:
+        file: In the package.
+        line: Of the change.
+        told: What was changed.
+        text: Of the whole file.
+    """
+
+    file: str
+    line: int
+    told: str
+    text: str
+
+
+def changed(node: ast.AST) -> str:
+    """Change a node in place; return what was done, empty if nothing can be."""
+    before = ast.unparse(node) if isinstance(node, ast.expr) else ""
+    if isinstance(node, ast.Compare) and type(node.ops[0]) in COMPARISONS:
+        node.ops[0] = COMPARISONS[type(node.ops[0])]()
+    elif isinstance(node, ast.BinOp) and type(node.op) in OPERATORS:
+        node.op = OPERATORS[type(node.op)]()
+    elif isinstance(node, ast.BoolOp):
+        node.op = ast.Or() if isinstance(node.op, ast.And) else ast.And()
+    elif isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.USub):
+        node.op = ast.UAdd()
+    elif isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.Not):
+        node.op = ast.UAdd()
+        node.operand = ast.Call(ast.Name("bool", ast.Load()), [node.operand], [])
+    elif isinstance(node, ast.Name) and node.id in NAMES:
+        node.id = NAMES[node.id]
+    elif isinstance(node, ast.Attribute) and node.attr in NAMES:
+        node.attr = NAMES[node.attr]
+    elif isinstance(node, ast.Constant) and type(node.value) in (bool, int, float):
+        value = node.value
+        node.value = not value if isinstance(value, bool) else value * 1.3 + 1
+    else:
+        return ""
+    return f"{before} -> {ast.unparse(node)}"
+
+
+def mutants(file: str) -> Iterator[Mutant]:
+    """Every change of a file."""
+    tree = ast.parse((PACKAGE / file).read_text("utf-8"))
+    for index, _ in enumerate(ast.walk(tree)):
+        altered = copy.deepcopy(tree)
+        node = next(n for k, n in enumerate(ast.walk(altered)) if k == index)
+        if told := changed(node):
+            fixed = ast.fix_missing_locations(altered)
+            line = getattr(node, "lineno", 0)
+            yield Mutant(file, line, told, ast.unparse(fixed))
+
+
+def survives(mutant: Mutant, package: Path) -> bool:
+    """Whether the tests of the file pass with the change.
+
+    Args:
+        mutant: The change.
+        package: A copy of the package.
+    """
+    place = package / mutant.file
+    sound = place.read_text("utf-8")
+    place.write_text(mutant.text, "utf-8")
+    words = [sys.executable, "-m", "pytest", "-q", "-x", "-p", "no:cacheprovider"]
+    where = os.environ | {"PYTHONPATH": str(package.parent), "CI": "true"}
+    try:
+        done = subprocess.run(
+            [*words, *TESTS[mutant.file]],
+            cwd=ROOT,
+            env=where,
+            capture_output=True,
+            check=False,
+            timeout=120,
+        )
+    except subprocess.TimeoutExpired:
+        return False
+    finally:
+        place.write_text(sound, "utf-8")
+    return done.returncode == 0
+
+
+def main() -> int:
+    """Print what survived and the score; return the exit code."""
+    number = int(sys.argv[1]) if len(sys.argv) > 1 else 60
+    every = [each for file in TESTS for each in mutants(file)]
+    drawn = random.Random(SEED).sample(every, min(number, len(every)))
+    alive = []
+    with tempfile.TemporaryDirectory() as folder:
+        package = Path(folder) / "costeer"
+        shutil.copytree(PACKAGE, package)
+        for mutant in drawn:
+            if survives(mutant, package):
+                alive.append(mutant)
+                print(
+                    f"survived: {mutant.file}:{mutant.line}: {mutant.told}", flush=True
+                )
+    score = 1.0 - len(alive) / len(drawn)
+    print(f"{len(drawn)} of {len(every)} changes, {len(alive)} survived: {score:.0%}")
+    return int(score < WANTED)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
