@@ -97,6 +97,23 @@ def _may_be_time(name: str, values: NDArray[Any]) -> bool:
     return bool((np.diff(np.asarray(values, np.float64)) > 0.0).all())
 
 
+Columns = Mapping[str, NDArray[Any]]  # Any: of any type
+
+
+def without_repeated(columns: Columns) -> tuple[dict[str, NDArray[Any]], list[str]]:
+    """Columns without the rows whose time equals that of the row before, and a note."""
+    time = np.asarray(columns["time"], np.float64)
+    kept = np.concatenate([[True], np.diff(time) != 0.0])[: len(time)]
+    dropped = np.flatnonzero(~kept)
+    if not dropped.size:
+        return dict(columns), []
+    told = (
+        f"{dropped.size} rows repeat the time of the row before, first row "
+        f"{dropped[0]}: left out"
+    )
+    return {name: values[kept] for name, values in columns.items()}, [told]
+
+
 def check_steps(steps: Iterable[float], ways_out: str) -> None:
     """Refuse a time between two samples that cannot be bridged.
 

@@ -9,7 +9,8 @@ import numpy as np
 
 from costeer.records.columns import TrialRecord
 from costeer.records.plausible import suspicions
-from costeer.records.record import read_recording
+from costeer.records.record import read_noted
+from costeer.records.tables import AS_FOUND, Reading
 from costeer.study.definitions import DEFAULTS, Columns, Measure, MeasureParameters
 from costeer.study.measures import Row, lane_change_rows, parameters_of, prepared
 from costeer.study.recordings import (
@@ -50,23 +51,26 @@ def analyse_file(
     path: str | os.PathLike[str],
     adaptation: Adaptation = AS_IT_IS,
     parameters: MeasureParameters = DEFAULTS,
+    reading: Reading = AS_FOUND,
 ) -> list[Analysis]:
     """Measure every stretch of a file.
 
     Args:
-        path: Trial record, CSV (gzipped too) or Parquet.
+        path: Trial record, CSV, Parquet or Arrow, gzipped or not.
         adaptation: Names, units and stretches of a foreign table.
         parameters: Thresholds of the measures.
+        reading: How to read a text.
 
     Raises:
         ValueError: If the file cannot be understood or is sampled too irregularly.
         OSError: If it cannot be read.
     """
-    recording = read_recording(path)
+    recording, notes = read_noted(path, reading)
     try:
-        return analyse(recording, adaptation, parameters, source=str(path))
+        found = analyse(recording, adaptation, parameters, source=str(path))
     except ValueError as error:
-        raise ValueError(f"{path}: {error}") from error
+        raise ValueError("; ".join([f"{path}: {error}", *notes])) from error
+    return [each._replace(notes=(*notes, *each.notes)) for each in found]
 
 
 def analyse(
@@ -94,7 +98,7 @@ def _analysed(
         sampling=found,
         measures=measures,
         lane_changes=lane_change_rows(even, parameters),
-        notes=tuple(_notes(even.columns, found, measures, part.ignored)),
+        notes=(*part.notes, *_notes(even.columns, found, measures, part.ignored)),
     )
 
 
