@@ -207,7 +207,7 @@ def test_moments_are_renamed_to_time() -> None:
     texts = np.array([str(stamp).replace("T", " ") for stamp in stamps])
     for values in (stamps, texts):
         columns = {"clock": values}
-        with pytest.raises(ValueError, match="it may be clock; .*--rename clock=time"):
+        with pytest.raises(ValueError, match=r"it may be clock; .*--rename clock=time"):
             stretches(columns)
         (stretch,) = stretches(columns, Adaptation(renames={"clock": "time"}))
         np.testing.assert_allclose(stretch.columns["time"], TIME, atol=1e-9)

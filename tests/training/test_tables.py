@@ -12,7 +12,13 @@ from numpy.typing import NDArray
 
 from costeer.intention.features import DISTANCE, FEATURES
 from costeer.records.record import TrialRecord
-from costeer.training.recordings import Recording, read_recordings, recordings_of, runs
+from costeer.training.recordings import (
+    Recording,
+    read_recordings,
+    recording,
+    recordings_of,
+    runs,
+)
 from costeer.training.tables import (
     absent_signals,
     measured_side,
@@ -206,7 +212,7 @@ def test_a_repeated_time_is_left_out_when_resampled(tmp_path: Path) -> None:
     drive = pd.DataFrame(changed())
     path = tmp_path / "twice.csv"
     pd.concat([drive[:101], drive[100:]]).to_csv(path, index=False)
-    with pytest.raises(ValueError, match="delete row 101, .*--resample"):
+    with pytest.raises(ValueError, match=r"delete row 101, .*--resample"):
         read_recordings([path])
     (made,) = read_recordings([path], resample=True)
     assert any("1 rows repeat the time" in note for note in made.notes)

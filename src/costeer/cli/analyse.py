@@ -10,6 +10,7 @@ import typer
 from costeer.cli.validate import at_least, positive
 
 if TYPE_CHECKING:
+    from costeer.records.tables import Reading
     from costeer.study.analysis import Analysis
 
 
@@ -47,6 +48,30 @@ def analyse(
         float,
         typer.Option(callback=positive("deg"), help="Gap of a reversal [deg]."),
     ] = 3.0,
+    any_lane: Annotated[
+        bool,
+        typer.Option("--any-lane", help="Measure lane keeping in whichever lane."),
+    ] = False,
+    join_lanes: Annotated[
+        bool,
+        typer.Option(
+            "--join-lanes",
+            help="The lateral position is from the centre of the lane driven in.",
+        ),
+    ] = False,
+    drop_repeated: Annotated[
+        bool,
+        typer.Option("--drop-repeated", help="Leave out rows whose time is repeated."),
+    ] = False,
+    separator: Annotated[
+        str, typer.Option(help="Between columns of a text; else found out.")
+    ] = "",
+    decimal: Annotated[
+        str, typer.Option(help="Decimal mark of a text; else found out.")
+    ] = "",
+    encoding: Annotated[
+        str, typer.Option(help="Of a text, as cp1252; else found out.")
+    ] = "",
     json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
 ) -> None:
     """Compute driving measures from records or a table.
@@ -69,12 +94,43 @@ def analyse(
         renames=pairs("--rename", rename or []),
         scales=factors(scale or []),
         sequence=sequence,
+        drop_repeated=drop_repeated,
+        join_lanes=join_lanes,
     )
     parameters = MeasureParameters(
-        reversal_angle=radians(gap_deg), reversal_cutoff=cutoff
+        reversal_angle=radians(gap_deg),
+        reversal_cutoff=cutoff,
+        any_lane=float(any_lane),
     )
-    found = [a for file in files for a in analyse_file(file, adaptation, parameters)]
+    reading = reading_of(separator, decimal, encoding)
+    found = [
+        each
+        for file in files
+        for each in analyse_file(file, adaptation, parameters, reading)
+    ]
     show_json(found) if json else show_tables(found)
+
+
+_BETWEEN = {"tab": "\t", "\\t": "\t", "comma": ",", "semicolon": ";", "space": " "}
+
+
+def reading_of(separator: str, decimal: str, encoding: str) -> Reading:
+    """How a text is to be read, from the options.
+
+    Raises:
+        ValueError: If a mark is not one letter, or both are the same.
+    """
+    from costeer.records.tables import Reading
+
+    between = _BETWEEN.get(separator, separator)
+    mark = {"point": ".", "comma": ","}.get(decimal, decimal)
+    if len(between) > 1:
+        raise ValueError(f"--separator {separator}: give one letter, or tab")
+    if mark not in ("", ".", ","):
+        raise ValueError(f"--decimal {decimal}: give a point or a comma")
+    if mark and mark == between:
+        raise ValueError(f"--decimal {decimal} is the --separator too; change one")
+    return Reading(between, mark, encoding)
 
 
 def pairs(option: str, words: list[str]) -> dict[str, str]:

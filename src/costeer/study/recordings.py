@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from costeer.records.checks import converted
 from costeer.records.columns import COLUMNS_BY_NAME
+from costeer.records.contradictions import joined
 from costeer.records.names import empty_told, groups
 from costeer.records.times import no_time, seconds, without_repeated
 from costeer.study.definitions import Columns
@@ -25,6 +26,8 @@ class Adaptation(NamedTuple):
         sequence: Column, as named there, that tells separate stretches apart; empty
             if the table is one stretch, or has a column `sequence`, or several
             participants.
+        join_lanes: Whether the lateral position is from the centre of the lane driven
+            in, and jumps at each crossing.
         drop_repeated: Whether of rows with the same time only the first is kept.
     """
 
@@ -32,6 +35,7 @@ class Adaptation(NamedTuple):
     scales: Mapping[str, float] = {}
     sequence: str = ""
     drop_repeated: bool = False
+    join_lanes: bool = False
 
 
 AS_IT_IS = Adaptation()
@@ -103,10 +107,13 @@ def _key(columns: Columns) -> str:
 
 
 def _stretch(part: Stretch, adaptation: Adaptation) -> Stretch:
-    """The stretch, if wanted without rows whose time was there before."""
-    if not adaptation.drop_repeated:
-        return part
-    columns, told = without_repeated(part.columns)
+    """The stretch as the user wants it: without repeated times, lanes joined."""
+    columns = dict(part.columns)
+    told: list[str] = []
+    if adaptation.drop_repeated:
+        columns, told = without_repeated(columns)
+    if adaptation.join_lanes and "lateral_position" in columns:
+        columns = joined(columns)
     return part._replace(columns=columns, notes=(*part.notes, *told))
 
 

@@ -26,6 +26,7 @@ from costeer.intention.features import (
     mirrored,
 )
 from costeer.records.checks import check_time, text_told
+from costeer.records.contradictions import contradictions, unwrapped
 from costeer.records.names import empty_told, groups, names_of
 from costeer.records.plausible import suspicions
 from costeer.records.record import TrialRecord, read_noted
@@ -98,6 +99,7 @@ def runs(driver: str, name: str, columns: Columns) -> list[Recording]:
             60 Hz.
     """
     _check(name, columns)
+    columns, told = unwrapped(columns)
     columns = with_distance(columns)
     crossing = crossings_of(name, columns)
     return [
@@ -109,7 +111,7 @@ def runs(driver: str, name: str, columns: Columns) -> list[Recording]:
             crossing=crossing,
             intended=_intended(crossing, course.side, columns),
             labels=labels(crossing, course.side),
-            notes=_notes(name, columns),
+            notes=(*(f"{name}: {each}" for each in told), *_notes(name, columns)),
             absent=absent_signals(columns),
         )
         for course in courses(name, columns)
@@ -122,7 +124,8 @@ def _notes(name: str, columns: Columns) -> tuple[str, ...]:
         f"{name}: {each.words}; if so, multiply it by {each.factor:.6g}"
         for each in suspicions(columns)
     ]
-    return (*units, *remarks(name, columns))
+    others = [f"{name}: {each}" for each in contradictions(columns)]
+    return (*units, *others, *remarks(name, columns))
 
 
 def lacking(recording: Recording, absent: Sequence[str]) -> Recording:
@@ -268,6 +271,8 @@ def recordings_of(
     found = [
         one for label, part in parts for one in runs(_driver(part, label), label, part)
     ]
+    columns, wrapped = unwrapped(columns)
+    before += [f"{name}: {each}" for each in wrapped]
     notes = (*before, *_notes(name, columns), *_too_short(name, found))
     return [r._replace(notes=() if i else notes) for i, r in enumerate(found)]
 
