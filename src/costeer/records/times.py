@@ -69,15 +69,19 @@ def _from_text(values: NDArray[np.str_]) -> tuple[NDArray[Any], str]:
     return values, ""
 
 
-def no_time(columns: Mapping[str, NDArray[Any]], hint: str = "") -> str:
+def likely_times(columns: Mapping[str, NDArray[Any]]) -> list[str]:
+    """Columns that may be the time, by their names or their values."""
+    return [name for name, values in columns.items() if _may_be_time(name, values)]
+
+
+def no_time(columns: Mapping[str, NDArray[Any]]) -> str:
     """Say that there is no time, and which columns it may be."""
-    near = [name for name, values in columns.items() if _may_be_time(name, values)]
+    near = likely_times(columns)
     named = near[0] if near else "t"
     likely = f"; it may be {' or '.join(near[:3])}" if near else ""
     return (
         f"there is no column 'time' [s]{likely}; rename yours (on the command line, "
-        f"for example, --rename {_quoted(named)}=time){hint}; there are "
-        f"{', '.join(columns)}"
+        f"for example, --rename {_quoted(named)}=time); there are {', '.join(columns)}"
     )
 
 

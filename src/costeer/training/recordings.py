@@ -30,7 +30,7 @@ from costeer.records.contradictions import contradictions, unwrapped
 from costeer.records.names import empty_told, groups, names_of
 from costeer.records.plausible import suspicions
 from costeer.records.record import TrialRecord, read_noted
-from costeer.records.times import no_time, without_repeated
+from costeer.records.times import likely_times, without_repeated
 from costeer.training.labels import Labels, labels
 from costeer.training.tables import (
     Columns,
@@ -111,7 +111,11 @@ def runs(driver: str, name: str, columns: Columns) -> list[Recording]:
             crossing=crossing,
             intended=_intended(crossing, course.side, columns),
             labels=labels(crossing, course.side),
-            notes=(*(f"{name}: {each}" for each in told), *_notes(name, columns)),
+            notes=(
+                *(f"{name}: {each}" for each in told),
+                *_contradicting(name, columns),
+                *_notes(name, columns),
+            ),
             absent=absent_signals(columns),
         )
         for course in courses(name, columns)
@@ -124,8 +128,12 @@ def _notes(name: str, columns: Columns) -> tuple[str, ...]:
         f"{name}: {each.words}; if so, multiply it by {each.factor:.6g}"
         for each in suspicions(columns)
     ]
-    others = [f"{name}: {each}" for each in contradictions(columns)]
-    return (*units, *others, *remarks(name, columns))
+    return (*units, *remarks(name, columns))
+
+
+def _contradicting(name: str, columns: Columns) -> list[str]:
+    """What the columns of one stretch say against each other."""
+    return [f"{name}: {each}" for each in contradictions(columns)]
 
 
 def lacking(recording: Recording, absent: Sequence[str]) -> Recording:
@@ -202,7 +210,12 @@ def _check_names(name: str, columns: Columns) -> None:
     """Refuse a table without what every stretch needs."""
     missing = [column for column in _NEEDED if column not in columns]
     if "time" in missing:
-        raise ValueError(f"{name} has no column time: {no_time(columns)}")
+        near = likely_times(columns)
+        likely = f"it may be {' or '.join(near[:3])}; " if near else ""
+        raise ValueError(
+            f"{name} has no column time [s]; {likely}name it so in the file; there are "
+            f"{', '.join(columns)}"
+        )
     if missing:
         raise ValueError(
             f"{name} has no column {', '.join(missing)}; names are those of the trial "
@@ -273,6 +286,8 @@ def recordings_of(
     ]
     columns, wrapped = unwrapped(columns)
     before += [f"{name}: {each}" for each in wrapped]
+    for label, part in parts:
+        before += _contradicting(label, unwrapped(part)[0])
     notes = (*before, *_notes(name, columns), *_too_short(name, found))
     return [r._replace(notes=() if i else notes) for i, r in enumerate(found)]
 
