@@ -12,6 +12,7 @@ MODULES = (
     "costeer.study.mixed",
     "costeer.study.repeated",
     "costeer.study.reversals",
+    "costeer.study.rounding",
     "costeer.study.ttests",
     "costeer.training.bootstrap",
     "costeer.training.labels",

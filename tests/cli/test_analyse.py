@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import json
+import math
 from pathlib import Path
 
+import pandas as pd
 import pytest
 
 from costeer.cli import main
@@ -99,3 +101,77 @@ def test_a_missing_file_is_named(
 ) -> None:
     assert main(["analyse", str(tmp_path / "none.csv")]) == 2
     assert "none.csv" in capsys.readouterr().err
+
+
+LAB = """
+names: {Zeit: time, Lenkwinkel: steering_wheel_angle, v: longitudinal_velocity}
+units: {steering_wheel_angle: deg, longitudinal_velocity: km/h}
+flip: [steering_wheel_angle]
+separator: semicolon
+decimal: comma
+encoding: cp1252
+"""
+
+
+def lab_drives(folder: Path) -> Path:
+    """Two drives in the words of a laboratory, and its file of names."""
+    folder.mkdir()
+    lines = [f"{k / 20};{30 * math.sin(k / 20)};72.0;aus" for k in range(400)]
+    text = "Zeit;Lenkwinkel;v;Wähler\n" + "\n".join(lines).replace(".", ",")
+    for name in ("a.txt", "b.CSV"):
+        (folder / name).write_bytes(text.encode("cp1252"))
+    (folder.parent / "lab.yaml").write_text(LAB)
+    return folder.parent / "lab.yaml"
+
+
+def test_a_file_of_names_says_names_units_signs_and_marks(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    lab = lab_drives(tmp_path / "drives")
+    file = str(tmp_path / "drives" / "a.txt")
+    assert main(["analyse", file, "--map", str(lab), "--json"]) == 0
+    (entry,) = json.loads(capsys.readouterr().out)
+    assert entry["measures"]["mean_speed"]["value"] == pytest.approx(20.0)
+    assert entry["measures"]["swrr"]["value"] == pytest.approx(19.1, abs=1.5)
+    assert not any("read as text" in note for note in entry["notes"])
+
+
+def test_a_folder_gives_a_table_with_a_row_for_each_drive(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    lab = lab_drives(tmp_path / "drives")
+    words = ["analyse", str(tmp_path / "drives"), "--map", str(lab)]
+    out = tmp_path / "table.csv"
+    assert main([*words, "--out", str(out)]) == 0
+    table = pd.read_csv(out)
+    assert [Path(file).name for file in table["file"]] == ["a.txt", "b.CSV"]
+    assert table["mean_speed"].tolist() == pytest.approx([20.0, 20.0])
+    (tmp_path / "drives" / "c.csv").write_text("PK")
+    assert main([*words, "--out", str(out)]) == 2
+    assert "2 drives, 1 files not read" in capsys.readouterr().err
+    table = pd.read_csv(out)
+    assert len(table) == 3
+    assert "c.csv" in table["error"][2]
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("nomen: {}", "there is no field 'nomen'; choose from names"),
+        ("names: [a]", "names: give NAME: VALUE lines"),
+        ("names: {a: time, b: time}", "time is given twice"),
+        ("units: {time: fortnights}", "fortnights is not known; give one of deg"),
+        ("scale: {time: fast}", "fast is no factor"),
+        ("a: [", "is not YAML"),
+        ("3", "has no fields"),
+        ("separator: ab", "--separator ab: give one letter"),
+    ],
+)
+def test_a_bad_file_of_names_is_refused_in_one_line(
+    text: str, message: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "lab.yaml").write_text(text)
+    assert main([*COMMA, "--map", str(tmp_path / "lab.yaml")]) == 2
+    shown = capsys.readouterr()
+    assert message in shown.err
+    assert len(shown.err.splitlines()) == 1

@@ -160,3 +160,32 @@ def test_another_version_or_other_signals_are_refused(
     np.savez(file, **arrays)
     with pytest.raises(ValueError, match="costeer train"):
         load_weights(file)
+
+
+@pytest.mark.parametrize("seed", range(60))
+def test_damage_anywhere_is_refused_in_one_line(seed: int, tmp_path: Path) -> None:
+    rng = np.random.default_rng(seed)
+    file = tmp_path / "weights.npz"
+    save_weights(file, network())
+    content = bytearray(file.read_bytes())
+    num = int(rng.integers(1, 40))
+    place = int(rng.integers(len(content) - num))
+    content[place : place + num] = rng.bytes(num)
+    file.write_bytes(content)
+    told = ""
+    try:
+        load_weights(file)
+    except ValueError as error:
+        told = str(error)
+    assert not told or "weights.npz" in told
+
+
+def test_an_array_of_a_size_that_no_memory_holds_is_refused(tmp_path: Path) -> None:
+    file = tmp_path / "weights.npz"
+    save_weights(file, network())
+    whole = file.read_bytes()
+    file.write_bytes(
+        whole.replace(b"'shape': (8,), }  ", b"'shape': (9999999999,)}"[:18])
+    )
+    with pytest.raises(ValueError, match=r"weights\.npz is not a file of intention"):
+        load_weights(file)

@@ -171,6 +171,20 @@ def test_killed_before_the_study_was_written_is_a_new_folder(tmp_path: Path) -> 
         ("- 1", "it is not YAML of a study"),
         ("format: 99\nconfiguration: {}", "it is not of format 1"),
         ("configuration: 3\nformat: 1", "it is not of format 1"),
+        ("format: 1\nconfiguration: {1: a, b: c}", "holds what no study has"),
+        ("format: 1\nconfiguration: {a: 2021-03-01}", "holds what no study has"),
+        ("format: 1\nconfiguration: {a: .nan}", "holds what no study has"),
+        ('a: !!int ""', "it is not YAML"),
+        ("a: 2021-13-41", "it is not YAML"),
+        ("[" * 5000, "it is not YAML"),
+        ("a: &a [*a]", "its references to itself grow too large"),
+        (
+            "a0: &a0 [x,x,x,x,x,x,x,x,x]\n"
+            + "".join(
+                f"a{k + 1}: &a{k + 1} [{','.join([f'*a{k}'] * 9)}]\n" for k in range(9)
+            ),
+            "its references to itself grow too large",
+        ),
     ],
 )
 def test_a_damaged_study_file_is_refused(

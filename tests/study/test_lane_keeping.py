@@ -10,6 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from costeer.study.crossings import LEFT, RIGHT
+from costeer.study.definitions import DEFAULTS
 from costeer.study.lane_keeping import (
     lane_departures,
     lateral_speed,
@@ -18,6 +19,7 @@ from costeer.study.lane_keeping import (
     times_to_line_crossing,
 )
 from costeer.study.segments import Segments, segment
+from costeer.study.trial_measures import prepare, trial_measures
 from tests.study.shapes import Columns, changes
 
 # Half the lane minus half the car: the centre may move so far before a wheel is on
@@ -61,6 +63,7 @@ def test_sdlp_has_one_mean_for_all_stretches() -> None:
 def test_sdlp_divides_by_one_less_than_the_samples() -> None:
     columns = {name: values[:2] for name, values in changes([]).items()}
     columns["lateral_position"] = np.array([0.0, 0.2])
+    columns["time"] = np.array([0.0, 1.0])
     assert sdlp(columns, cut(columns)).value == pytest.approx(0.2 / sqrt(2), rel=1e-12)
 
 
@@ -68,10 +71,10 @@ def test_without_lane_keeping_there_is_no_sdlp() -> None:
     columns = changes([], offset=-3.5)
     found = sdlp(columns, cut(columns))
     assert np.isnan(found.value)
-    assert "no lane keeping" in found.reason
+    assert "never in the left lane" in found.reason
     speed = lateral_speed(columns)
     for measure in times_to_line_crossing(columns, speed, cut(columns)):
-        assert "no lane keeping" in measure.reason
+        assert "never in the left lane" in measure.reason
 
 
 @pytest.mark.parametrize("direction", [LEFT, RIGHT])
@@ -147,3 +150,50 @@ def test_crossing_the_line_and_back_is_a_departure() -> None:
 
 def test_a_drift_across_the_line_is_a_departure() -> None:
     assert len(departures(changes([(10.0, 40.0, RIGHT)]))) == 1
+
+
+def test_the_lane_driven_in_is_measured_if_wanted() -> None:
+    wander = 0.2 * np.sin(np.arange(1200) / 60.0)
+    right = {name: v[:1200] for name, v in changes([], offset=-3.5).items()}
+    left = right | {"lateral_position": wander}
+    right["lateral_position"] = wander - 3.5
+    any_lane = DEFAULTS._replace(any_lane=1.0)
+    here, there = (trial_measures(prepare(c, any_lane)) for c in (left, right))
+    for name in ("sdlp", "line_crossing_time_minimum", "lane_keeping_duration"):
+        assert here[name].value == pytest.approx(there[name].value, rel=1e-9)
+    assert trial_measures(prepare(left))["sdlp"] == here["sdlp"]
+
+
+@pytest.mark.parametrize("rate", [10.0, 20.0, 50.0, 60.0, 100.0])
+@pytest.mark.parametrize("step", [0.01, 0.005, 1e-9])
+def test_a_rounded_position_gives_the_time_of_the_whole_one(
+    rate: float, step: float
+) -> None:
+    # Least of (0.85 - 0.2 sin) / (0.2 w cos) is sqrt(0.85^2 - 0.2^2) / (0.2 w).
+    time = np.arange(0.0, 120.0, 1.0 / rate)
+    sway = 0.2 * np.sin(2.0 * np.pi * 0.02 * time)
+    columns = {
+        "time": time,
+        "lateral_position": np.round(sway / step) * step,
+        "yaw_angle": np.zeros(time.size),
+    }
+    found = trial_measures(prepare(columns))["line_crossing_time_minimum"]
+    assert found.value == pytest.approx(np.sqrt(0.85**2 - 0.2**2) / 0.02513, rel=0.05)
+
+
+def test_a_car_that_stands_still_sideways_has_no_time_to_the_line() -> None:
+    time = np.arange(0.0, 20.0, 0.05)
+    noise = 1e-16 * np.random.default_rng(1).normal(size=time.size)
+    columns = {"time": time, "lateral_position": 0.1 + noise, "yaw_angle": 0.0 * time}
+    found = trial_measures(prepare(columns))
+    for name in ("line_crossing_time_minimum", "line_crossing_time_median"):
+        assert "the car does not move sideways" in found[name].reason
+
+
+@pytest.mark.parametrize("num_rows", [2, 10, 59])
+def test_too_few_rows_give_no_value_but_a_reason(num_rows: int) -> None:
+    columns = {name: values[:num_rows] for name, values in changes([]).items()}
+    found = trial_measures(prepare(columns))
+    for name in ("sdlp", "swrr", "line_crossing_time_minimum", "mean_speed"):
+        assert np.isnan(found[name].value)
+    assert f"{num_rows} rows are too short" in found["sdlp"].reason

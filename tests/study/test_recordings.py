@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import Any
 
 import numpy as np
@@ -82,8 +83,6 @@ def test_whole_numbers_do_for_flags_and_lanes() -> None:
             Adaptation(),
             "'yaw_angle' is 'left' in row 0, expected a number",
         ),
-        (table(lane=TIME), Adaptation(), "'lane' is 0.05 in row 1; expected a whole"),
-        (table(intention=TIME * 20), Adaptation(), "'intention' is 2 in row 2; expe"),
     ],
 )
 def test_what_cannot_be_meant_is_refused(
@@ -152,3 +151,64 @@ def test_what_a_record_leaves_empty_stays_empty() -> None:
     np.testing.assert_array_equal(
         np.ma.getmaskarray(stretch.columns["target_lane"]), TIME > 2.0
     )
+
+
+@pytest.mark.parametrize(
+    ("columns", "note"),
+    [
+        (
+            {"lane": TIME},
+            "lane is not used: .*'lane' is 0.05 in row 1; expected a whole",
+        ),
+        ({"intention": TIME * 20}, "intention is not used: .*is 2 in row 2; expected"),
+        (
+            {"brake": np.full(100, "off")},
+            "brake is not used: .*'brake' is 'off' in row",
+        ),
+        ({"lane": np.where(TIME < 1, np.nan, 1.0)}, "'lane' has undefined samples"),
+        ({"event": np.full(100, "none")}, "event is not used"),
+    ],
+)
+def test_a_column_that_is_not_needed_refuses_nothing(
+    columns: dict[str, np.ndarray], note: str
+) -> None:
+    (stretch,) = stretches(table(yaw_angle=TIME, **columns))
+    assert set(stretch.columns) == {"time", "yaw_angle"}
+    (told,) = stretch.notes
+    assert re.search(note, told)
+
+
+def test_rows_without_a_name_are_one_stretch_that_is_named() -> None:
+    for keys in (np.repeat([1.0, np.nan], 50), np.repeat(["1.0", ""], 50)):
+        first, second = stretches(table(sequence=keys))
+        assert (first.name, second.name) == ("1.0", "empty")
+        assert "sequence is empty in 50 rows, first in row 50" in second.notes[0]
+
+
+def test_participants_are_told_apart_like_stretches() -> None:
+    names = np.repeat(["2021-03-01", "2021-03-02"], 50)
+    found = stretches(table(participant=names))
+    assert [each.name for each in found] == ["2021-03-01", "2021-03-02"]
+    (one,) = stretches(table(participant=np.full(100, "a")))
+    assert one.columns["time"].size == 100
+
+
+def test_a_repeated_time_is_left_out_if_wanted() -> None:
+    time = np.insert(TIME, 40, TIME[40])
+    (stretch,) = stretches({"time": time}, Adaptation(drop_repeated=True))
+    np.testing.assert_array_equal(stretch.columns["time"], TIME)
+    assert "1 rows repeat the time of the row before, first row 41" in stretch.notes[0]
+    with pytest.raises(ValueError, match=r"delete row 41, .*--drop-repeated"):
+        sampling(time)
+
+
+def test_moments_are_renamed_to_time() -> None:
+    stamps = np.datetime64("2024-05-01T10:00") + (TIME * 1e9).astype("m8[ns]")
+    texts = np.array([str(stamp).replace("T", " ") for stamp in stamps])
+    for values in (stamps, texts):
+        columns = {"clock": values}
+        with pytest.raises(ValueError, match=r"it may be clock; .*--rename clock=time"):
+            stretches(columns)
+        (stretch,) = stretches(columns, Adaptation(renames={"clock": "time"}))
+        np.testing.assert_allclose(stretch.columns["time"], TIME, atol=1e-9)
+        assert "seconds since the first row" in stretch.notes[0]

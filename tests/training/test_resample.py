@@ -83,10 +83,48 @@ def test_a_crossing_is_at_the_first_sample_that_is_not_before_it() -> None:
     assert [sample_at(made, t) for t in (0.1, 0.11, 0.2, 0.0)] == [0, 1, 6, -6]
 
 
-def test_rows_that_are_not_even_are_refused() -> None:
-    time = np.array([0.0, 0.1, 0.2, 0.4, 0.5])
-    with pytest.raises(ValueError, match=r"a: 0.2 s lie between rows 2 and 3"):
+def test_a_gap_and_times_that_do_not_rise_are_refused() -> None:
+    time = np.array([0.0, 0.1, 0.2, 0.5, 0.6])
+    with pytest.raises(ValueError, match=r"a: 0.3 s pass between rows 2 and 3"):
         grid("a", time)
+    with pytest.raises(ValueError, match="a: time does not increase in row 2"):
+        grid("a", np.array([0.0, 0.1, 0.1, 0.2]))
+
+
+UNEVEN = [
+    np.round(np.arange(200) / 60.0, 2),
+    np.cumsum(np.random.default_rng(1).uniform(0.01, 0.05, 200)),
+    np.delete(np.arange(80) / 20.0, [20, 21, 50]),
+]
+
+
+@pytest.mark.parametrize("time", UNEVEN)
+def test_uneven_rows_give_even_samples_as_late_as_the_longest_step(
+    time: np.ndarray,
+) -> None:
+    made = grid("a", time)
+    samples = made.start + np.arange(len(made.latest)) / 60.0
+    found = delayed(made, 2.0 * time, np.zeros(time.size, bool))
+    late = 2.0 * (samples - np.diff(time).max())
+    np.testing.assert_allclose(found, late, atol=1e-5)
+    assert (time[made.latest] <= samples + 1e-6).all()
+    assert samples[-1] == pytest.approx(time[-1])
+
+
+@pytest.mark.parametrize("time", UNEVEN)
+@pytest.mark.parametrize("row", [1, 30, 60])
+def test_of_uneven_rows_too_what_comes_later_changes_nothing(
+    time: np.ndarray, row: int
+) -> None:
+    made, none = grid("a", time), np.zeros(time.size, bool)
+    samples = made.start + np.arange(len(made.latest)) / 60.0
+    values = np.sin(np.arange(time.size))
+    other = np.where(np.arange(time.size) >= row, 9.0, values)
+    before = samples < time[row] - 1e-6
+    np.testing.assert_array_equal(
+        delayed(made, values, none)[before], delayed(made, other, none)[before]
+    )
+    np.testing.assert_array_equal(held(made, values)[before], held(made, other)[before])
 
 
 def test_the_slope_is_that_of_half_the_span_ago() -> None:

@@ -12,7 +12,13 @@ from numpy.typing import NDArray
 
 from costeer.intention.features import DISTANCE, FEATURES
 from costeer.records.record import TrialRecord
-from costeer.training.recordings import Recording, read_recordings, recordings_of, runs
+from costeer.training.recordings import (
+    Recording,
+    read_recordings,
+    recording,
+    recordings_of,
+    runs,
+)
 from costeer.training.tables import (
     absent_signals,
     measured_side,
@@ -189,3 +195,57 @@ def test_a_table_of_10_hz_is_read_when_asked(tmp_path: Path) -> None:
     (made,) = read_recordings([path], resample=True)
     assert np.count_nonzero(made.intended) == 4
     assert np.isfinite(made.features).all()
+
+
+def test_times_rounded_to_ten_milliseconds_are_resampled(tmp_path: Path) -> None:
+    drive = changed()
+    path = tmp_path / "rounded.csv"
+    pd.DataFrame(drive | {"time": drive["time"].round(2)}).to_csv(path, index=False)
+    with pytest.raises(ValueError, match="--resample"):
+        read_recordings([path])
+    (made,) = read_recordings([path], resample=True)
+    assert any("unevenly sampled, steps up to 0.02 s" in note for note in made.notes)
+    assert np.count_nonzero(made.intended) == 4
+
+
+def test_a_repeated_time_is_left_out_when_resampled(tmp_path: Path) -> None:
+    drive = pd.DataFrame(changed())
+    path = tmp_path / "twice.csv"
+    pd.concat([drive[:101], drive[100:]]).to_csv(path, index=False)
+    with pytest.raises(ValueError, match=r"delete row 101, .*--resample"):
+        read_recordings([path])
+    (made,) = read_recordings([path], resample=True)
+    assert any("1 rows repeat the time" in note for note in made.notes)
+
+
+def test_rows_without_a_sequence_are_one_stretch_that_is_named(tmp_path: Path) -> None:
+    drive = pd.DataFrame(changed())
+    path = tmp_path / "empty.csv"
+    drive.assign(sequence=[1.0] * 2000 + [np.nan] * (len(drive) - 2000)).to_csv(path)
+    first, second = read_recordings([path])
+    assert (first.name, second.name) == (f"{path}:1.0", f"{path}:empty")
+    assert any("sequence is empty in" in note for note in first.notes)
+
+
+@pytest.mark.parametrize("sequence", [True, False])
+def test_participants_that_look_like_dates_are_drivers(
+    sequence: bool, tmp_path: Path
+) -> None:
+    drive = pd.DataFrame(changed())
+    days = ("2021-03-01", "2021-03-02")
+    parts = [drive.assign(participant=d, sequence=k // 2) for k, d in enumerate(days)]
+    table = pd.concat(parts)
+    path = tmp_path / "days.csv"
+    table.drop(columns=[] if sequence else "sequence").to_csv(path, index=False)
+    found = read_recordings([path])
+    assert [each.driver for each in found] == list(days)
+
+
+def test_a_lane_with_gaps_is_not_needed_beside_crossings() -> None:
+    drive = changed(adjacent_side=np.where(columns(1)["lane"] == 0, 1, -1))
+    drive["crossing"] = crossing_of(columns(1))
+    whole = recording("a", "a", drive)
+    drive["lane"] = np.where(drive["time"] < 1.0, np.nan, drive["lane"])
+    made = recording("a", "a", drive)
+    np.testing.assert_array_equal(made.crossing, whole.crossing)
+    assert any("lane is empty in some rows" in note for note in made.notes)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -10,14 +11,23 @@ import typer
 from costeer.cli.validate import at_least, positive
 
 if TYPE_CHECKING:
+    from costeer.records.tables import Reading
     from costeer.study.analysis import Analysis
 
 
 def analyse(
     files: Annotated[
         list[Path],
-        typer.Argument(help="Trial records, CSV (also .csv.gz) or Parquet tables."),
+        typer.Argument(help="Trial records, tables (text, Parquet, Arrow), folders."),
     ],
+    map_file: Annotated[
+        Path | None,
+        typer.Option("--map", help="YAML of names, units, scale, flip and marks."),
+    ] = None,
+    out: Annotated[
+        Path | None,
+        typer.Option(help="Write a CSV with one row for each drive instead."),
+    ] = None,
     rename: Annotated[
         list[str] | None,
         typer.Option(metavar="OLD=NEW", help="Name of a column; repeatable."),
@@ -47,8 +57,32 @@ def analyse(
         float,
         typer.Option(callback=positive("deg"), help="Gap of a reversal [deg]."),
     ] = 3.0,
+    any_lane: Annotated[
+        bool,
+        typer.Option("--any-lane", help="Measure lane keeping in whichever lane."),
+    ] = False,
+    join_lanes: Annotated[
+        bool,
+        typer.Option(
+            "--join-lanes",
+            help="The lateral position is from the centre of the lane driven in.",
+        ),
+    ] = False,
+    drop_repeated: Annotated[
+        bool,
+        typer.Option("--drop-repeated", help="Leave out rows whose time is repeated."),
+    ] = False,
+    separator: Annotated[
+        str, typer.Option(help="Between columns of a text; else found out.")
+    ] = "",
+    decimal: Annotated[
+        str, typer.Option(help="Decimal mark of a text; else found out.")
+    ] = "",
+    encoding: Annotated[
+        str, typer.Option(help="Of a text, as cp1252; else found out.")
+    ] = "",
     json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
-) -> None:
+) -> int | None:
     """Compute driving measures from records or a table.
 
     A table needs a column time [s] and any of a trial record's columns in SI units;
@@ -58,23 +92,83 @@ def analyse(
     Example:
         costeer analyse drive.csv --rename t=time --rename angle=steering_wheel_angle
         --scale steering_wheel_angle=0.0174533
+        costeer analyse drives/ --map lab.yaml --out table.csv
     """
     from math import radians
 
+    from costeer.cli.many import drives
+    from costeer.cli.mapping import read_lab
     from costeer.study.analysis import analyse_file
     from costeer.study.definitions import MeasureParameters
     from costeer.study.recordings import Adaptation
 
+    lab = read_lab(map_file)
     adaptation = Adaptation(
-        renames=pairs("--rename", rename or []),
-        scales=factors(scale or []),
-        sequence=sequence,
+        renames={**lab.renames, **pairs("--rename", rename or [])},
+        scales={**lab.scales, **factors(scale or [])},
+        sequence=sequence or lab.sequence,
+        drop_repeated=drop_repeated,
+        join_lanes=join_lanes,
     )
     parameters = MeasureParameters(
-        reversal_angle=radians(gap_deg), reversal_cutoff=cutoff
+        reversal_angle=radians(gap_deg),
+        reversal_cutoff=cutoff,
+        any_lane=float(any_lane),
     )
-    found = [a for file in files for a in analyse_file(file, adaptation, parameters)]
+    reading = reading_of(
+        separator or lab.separator, decimal or lab.decimal, encoding or lab.encoding
+    )
+
+    def one(file: Path) -> list[Analysis]:
+        return analyse_file(file, adaptation, parameters, reading)
+
+    if out is not None:
+        return table_of(out, drives(files), one)
+    found = [each for file in drives(files) for each in one(file)]
     show_json(found) if json else show_tables(found)
+    return None
+
+
+def table_of(
+    out: Path, files: list[Path], one: Callable[[Path], list[Analysis]]
+) -> int:
+    """Write the table of all drives; the exit code says whether all could be read."""
+    from costeer.base.files import try_writing
+    from costeer.cli.console import note
+    from costeer.cli.many import analysed, write_rows
+
+    try_writing(out)
+    found, refused = analysed([file for file in files if file != out], one)
+    for why in refused.values():
+        note(f"costeer: {why}")
+    for each in found:
+        for line in each.notes:
+            note(f"note on {_name(each)}: {line}")
+    write_rows(out, found, refused)
+    note(f"written: {out}, {len(found)} drives, {len(refused)} files not read")
+    return 2 if refused else 0
+
+
+_BETWEEN = {"tab": "\t", "\\t": "\t", "comma": ",", "semicolon": ";", "space": " "}
+
+
+def reading_of(separator: str, decimal: str, encoding: str) -> Reading:
+    """How a text is to be read, from the options.
+
+    Raises:
+        ValueError: If a mark is not one letter, or both are the same.
+    """
+    from costeer.records.tables import Reading
+
+    between = _BETWEEN.get(separator, separator)
+    mark = {"point": ".", "comma": ","}.get(decimal, decimal)
+    if len(between) > 1:
+        raise ValueError(f"--separator {separator}: give one letter, or tab")
+    if mark not in ("", ".", ","):
+        raise ValueError(f"--decimal {decimal}: give a point or a comma")
+    if mark and mark == between:
+        raise ValueError(f"--decimal {decimal} is the --separator too; change one")
+    return Reading(between, mark, encoding)
 
 
 def pairs(option: str, words: list[str]) -> dict[str, str]:

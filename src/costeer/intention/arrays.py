@@ -22,6 +22,8 @@ from costeer.intention.features import FEATURES, WINDOW_LENGTH
 
 Arrays = dict[str, NDArray[Any]]  # Any: of whatever numbers
 
+_LARGEST_SIZE = 1 << 30  # [bytes], a thousand times what costeer ships
+
 FLOATS = ("<f4", "<f8")
 
 
@@ -76,19 +78,14 @@ def read_arrays(
         ValueError: If it is of another kind, version or other signals.
     """
     try:
+        _refuse_bomb(content)
         with np.load(io.BytesIO(content), allow_pickle=False) as archive:
             arrays = {name: archive[name] for name in archive.files}
         header = dict(json.loads(arrays.pop("header").tobytes()))
-    except (
-        ValueError,
-        KeyError,
-        EOFError,
-        AttributeError,
-        TypeError,
-        zipfile.BadZipFile,
-    ) as error:
+    except Exception as error:  # whatever a damaged archive makes numpy raise
         raise ValueError(
-            f"{source} is not a file of {form.kind}, or it is damaged"
+            f"{source} is not a file of {form.kind}, or it is damaged; "
+            f"restore it, or {form.remedy}"
         ) from error
     if header.get("version") != form.version:
         raise ValueError(
@@ -101,6 +98,14 @@ def read_arrays(
             f"{list(FEATURES)}: {form.remedy}"
         )
     return header, arrays
+
+
+def _refuse_bomb(content: bytes) -> None:
+    """Refuse an archive that unpacks to more than any such file holds."""
+    with zipfile.ZipFile(io.BytesIO(content)) as archive:
+        size = sum(member.file_size for member in archive.infolist())
+    if size > _LARGEST_SIZE:
+        raise ValueError(f"it unpacks to {size} bytes")
 
 
 def arrays_hash(arrays: Mapping[str, NDArray[Any]]) -> str:

@@ -111,7 +111,10 @@ def _parsed(content: bytes, source: str) -> IntentionNetwork:
         raise ValueError(f"{source} lacks the arrays {', '.join(missing)}")
     weights = NetworkWeights(**{name: arrays[name] for name in NetworkWeights._fields})
     _check(weights, source)
-    network = intention_network(weights, header.get("facts", {}))
+    facts = header.get("facts", {})
+    if not isinstance(facts, dict):
+        raise ValueError(f"{source} is damaged: what it tells of its training is none")
+    network = intention_network(weights, facts)
     if network.hash != header.get("hash"):
         raise ValueError(f"{source} was altered: its hash does not fit its weights")
     return network

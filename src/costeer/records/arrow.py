@@ -6,6 +6,7 @@ the fields' metadata, the description of the trial in the schema's, as JSON.
 
 import json
 import math
+import zlib
 from collections.abc import Iterable, Sequence
 from typing import Any, NamedTuple, cast
 
@@ -161,6 +162,19 @@ def _codes(column: Column, values: NDArray[np.str_]) -> NDArray[np.int8]:
     return codes
 
 
+def batch_checksum(batch: pa.RecordBatch) -> int:
+    """CRC-32 over every buffer of every column, in order.
+
+    The flags of what is defined are left out where everything is, as in a stream.
+    """
+    found = 0
+    for column in batch.columns:
+        flags, *data = column.buffers()
+        for buffer in (flags if column.null_count else None, *data):
+            found = zlib.crc32(buffer, found) if buffer is not None else found
+    return found
+
+
 def described(schema: pa.Schema) -> Described:
     """What a schema says of the trial and its columns.
 
@@ -169,6 +183,7 @@ def described(schema: pa.Schema) -> Described:
             no record has.
     """
     metadata = _metadata(schema)
+    refuse_twice(schema.names)
     others = [field for field in schema if field.name not in COLUMN_NAMES]
     refuse_unknown(f.name for f in others if not f.name.startswith(METHOD_PREFIX))
     added = [_declared(field) for field in others]
@@ -235,8 +250,8 @@ def _metadata(schema: pa.Schema) -> dict[str, object]:
             "record; `costeer analyse` reads plain tables"
         )
     try:
-        metadata: dict[str, object] = json.loads(text)
-    except ValueError as error:
+        metadata = json.loads(text)
+    except (ValueError, RecursionError) as error:
         raise ValueError("its 'costeer' metadata is not JSON") from error
     present = upgraded(metadata)
     _refuse_missing("metadata fields", METADATA_FIELDS, present)
@@ -299,26 +314,55 @@ def _strings(array: pa.Array) -> NDArray[np.str_]:
 def plain_columns(table: pa.Table) -> dict[str, NDArray[Any]]:
     """The columns of a foreign table that hold numbers, flags or text.
 
-    Numbers with gaps become floats with NaN, flags with gaps masked arrays. Columns
-    of another type, times of day for example, are left out.
+    Numbers with gaps become floats with NaN, flags with gaps masked arrays. Days
+    become text, moments and durations stay such. Columns of another type, lists for
+    example, are left out.
 
     Raises:
         ValueError: If a name stands twice.
     """
-    for name in table.column_names:
-        if table.column_names.count(name) > 1:
-            raise ValueError(
-                f"{table.column_names.count(name)} columns have the name {name!r}; the "
-                "first row names the columns, each differently"
-            )
+    refuse_twice(table.column_names)
     arrays = {name: _plain_column(table.column(name)) for name in table.column_names}
     return {name: array for name, array in arrays.items() if array is not None}
+
+
+def _moments(array: pa.Array) -> NDArray[Any]:
+    """Moments and durations in nanoseconds; undefined ones are NaT."""
+    of_day = pa.types.is_time(array.type)
+    kind = "M8[ns]" if pa.types.is_timestamp(array.type) else "m8[ns]"
+    if of_day:
+        array = array.cast(pa.time64("ns"))
+    else:
+        unit = pa.timestamp("ns") if kind == "M8[ns]" else pa.duration("ns")
+        array = array.cast(unit, safe=False)
+    numbers = _with_gaps(array.cast(pa.int64()))
+    return np.asarray(numbers.filled(np.iinfo(np.int64).min).view(kind))
+
+
+def refuse_twice(names: Sequence[str]) -> None:
+    """Refuse names that do not tell columns apart.
+
+    Raises:
+        ValueError: Naming one that stands twice.
+    """
+    twice = next((name for name in names if names.count(name) > 1), None)
+    if twice is not None:
+        raise ValueError(
+            f"{names.count(twice)} columns have the name {twice!r}; the "
+            "first row names the columns, each differently"
+        )
 
 
 def _plain_column(values: pa.ChunkedArray) -> NDArray[Any] | None:
     array = values.combine_chunks()
     if pa.types.is_dictionary(array.type):
         array = array.cast(array.type.value_type)
+    if pa.types.is_date(array.type):
+        array = array.cast(pa.string())
+    if pa.types.is_decimal(array.type):
+        array = array.cast(pa.float64())
+    if pa.types.is_temporal(array.type):
+        return _moments(array)
     if pa.types.is_string(array.type) or pa.types.is_large_string(array.type):
         return _strings(array.cast(pa.string()))
     if pa.types.is_boolean(array.type):

@@ -122,8 +122,17 @@ def check_time(time: NDArray[np.float64]) -> None:
         row = int(falling[0]) + 1
         raise ValueError(
             f"time does not increase in row {row}: {time[row - 1]} s, then "
-            f"{time[row]} s; sort the rows or split the recording"
+            f"{time[row]} s; {_way_out(time, row)}"
         )
+
+
+def _way_out(time: NDArray[np.float64], row: int) -> str:
+    if time[row] == time[row - 1]:
+        return (
+            f"delete row {row}, which repeats the one before (on the command line: "
+            "analyse --drop-repeated, evaluate and train --resample)"
+        )
+    return "sort the rows or split the recording at a column 'sequence'"
 
 
 def _check_lengths(columns: dict[str, NDArray[Any]]) -> None:

@@ -44,6 +44,9 @@ CLOCK_FIELDS = ("started_at", "ended_at")
 """When a person drove, in UTC as ISO 8601. A simulated trial has no date: it would not
 be the same bytes again."""
 
+_LARGEST = 1e15
+"""No number of a description is larger. Source: assumed, far beyond any."""
+
 _UTC = re.compile(r"\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d(\.\d+)?(Z|\+00:00)")
 
 
@@ -85,12 +88,28 @@ def _check_moment(name: str, moment: object, allowed: bool) -> None:
         )
 
 
-def upgraded(metadata: dict[str, object]) -> dict[str, object]:
+_NUMBERS = (
+    "strength_factor",
+    "change_duration",
+    "speed",
+    "inconsistency_threshold",
+    "replan_gain",
+    "torque_limit",
+)
+
+
+def upgraded(metadata: object) -> dict[str, object]:
     """The description of a record of any version as one of `RECORD_VERSION`.
 
     Raises:
-        ValueError: If the version is not known.
+        ValueError: If it is none, or the version is not known.
     """
+    if not isinstance(metadata, dict):
+        raise ValueError(
+            f"its description is damaged: {type(metadata).__name__} where names and "
+            "values of the trial should stand; restore the file"
+        )
+    _check_numbers(metadata)
     version = metadata.get("record_version", 1)
     if version == RECORD_VERSION:
         return metadata
@@ -101,6 +120,17 @@ def upgraded(metadata: dict[str, object]) -> dict[str, object]:
         )
     kind = driver_kind_of(str(metadata.get("driver", "")))
     return {**metadata, "driver_kind": kind, "record_version": RECORD_VERSION}
+
+
+def _check_numbers(metadata: Mapping[str, object]) -> None:
+    """Refuse a description whose numbers are none that a computer calculates with."""
+    for name in _NUMBERS:
+        value = metadata.get(name)
+        if isinstance(value, int | float) and abs(value) > _LARGEST:
+            raise ValueError(
+                f"its description is damaged: {name} is too large a number; "
+                "restore the file"
+            )
 
 
 def driver_kind_of(driver: str) -> str:

@@ -54,8 +54,8 @@ def suspicions(columns: Columns) -> list[Suspicion]:
         for name, (largest, unit, other, factor) in _PLAUSIBLE.items()
         if name in columns and _largest(columns[name]) > largest
     ]
-    told = {each.column for each in found}
-    if not told & {_ANGLE, _SPEED} and _steers_too_hard(columns):
+    told = {each.column: each.factor for each in found}
+    if _ANGLE not in told and _steers_too_hard(columns, told.get(_SPEED, 1.0)):
         words = f"{_ANGLE} looks like degrees, expected rad"
         found.append(Suspicion(_ANGLE, words, radians(1.0)))
     return found
@@ -66,11 +66,10 @@ def _largest(values: NDArray[np.float64]) -> float:
     return float(finite.max()) if finite.size else 0.0
 
 
-def _steers_too_hard(columns: Columns) -> bool:
+def _steers_too_hard(columns: Columns, speed_factor: float) -> bool:
     """Whether the angle, in radians, would need more grip than tyres have."""
     if not {_ANGLE, _SPEED} <= columns.keys():
         return False
-    acceleration = (
-        columns[_ANGLE] * columns[_SPEED] ** 2 / _STEERING_RATIO_TIMES_WHEELBASE
-    )
+    speed = columns[_SPEED] * speed_factor
+    acceleration = columns[_ANGLE] * speed**2 / _STEERING_RATIO_TIMES_WHEELBASE
     return _largest(acceleration) > _LARGEST_LATERAL_ACCELERATION

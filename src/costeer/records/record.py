@@ -11,7 +11,6 @@ from pathlib import Path
 from typing import NamedTuple
 
 import pyarrow as pa
-import pyarrow.csv
 import pyarrow.ipc
 import pyarrow.parquet as pq
 
@@ -33,7 +32,17 @@ from costeer.records.columns import (
     TrialRecord,
     with_method_columns,
 )
+from costeer.records.kinds import ARROW_FILE, PARQUET, STREAM, kind_of, unpacked
 from costeer.records.metadata import METADATA_FIELDS
+from costeer.records.stream import Stream, sound_batches
+from costeer.records.tables import (
+    AS_FOUND,
+    Found,
+    Reading,
+    text_table,
+    understood,
+)
+from costeer.records.times import seconds
 
 __all__ = [
     "COLUMNS",
@@ -50,6 +59,9 @@ __all__ = [
 
 MARKERS_KEY = b"markers"
 """Where a stream keeps the markers of a batch, as JSON."""
+
+DAMAGE_KEY = "damage"
+"""Where the description of a drive says what of its stream could not be read."""
 
 CLOCK_KEY = b"clock"
 """Where a stream says when its trial began and until when it was driven, as JSON."""
@@ -129,15 +141,15 @@ def read_record(
         for name in names or ()
         if name not in COLUMN_NAMES and not name.startswith(METHOD_PREFIX)
     )
-    return _record_in(_opened(Path(path)), path, names)
+    return _record_in(_opened(Path(path).read_bytes(), path), path, names)
 
 
 def read_recording(path: str | os.PathLike[str]) -> TrialRecord:
-    """Read a trial record or any table: CSV, gzipped CSV, Parquet or Arrow stream.
+    """Read a trial record or any table: CSV, Parquet or Arrow, gzipped or not.
 
     Args:
-        path: The file. A name that ends in `.csv` or `.csv.gz` is read as CSV, one in
-            `.arrow` as the stream of a drive, which may have been cut off.
+        path: The file, told by its content. The stream of a drive may have been cut
+            off.
 
     Returns:
         A trial record; of a plain table its columns as they are, without metadata.
@@ -146,47 +158,89 @@ def read_recording(path: str | os.PathLike[str]) -> TrialRecord:
         ValueError: If the file cannot be understood.
         OSError: If it cannot be read.
     """
-    if str(path).endswith((".csv", ".csv.gz")):
-        return _plain_recording(_csv_table(Path(path)), path)
-    if str(path).endswith(".arrow"):
-        return read_stream(path)
-    file = _opened(Path(path))
-    if METADATA_KEY in (file.schema_arrow.metadata or {}):
-        return _record_in(file, path, None)
-    return _plain_recording(_rows(file, path, file.schema_arrow.names), path)
+    return read_noted(path).record
+
+
+class Noted(NamedTuple):
+    """A recording and what was assumed of its file.
+
+    Attributes:
+        record: As `read_recording` gives it.
+        notes: What a reader should know of how it was read.
+    """
+
+    record: TrialRecord
+    notes: tuple[str, ...] = ()
+
+
+def read_noted(path: str | os.PathLike[str], reading: Reading = AS_FOUND) -> Noted:
+    """As `read_recording`, with what was assumed.
+
+    Args:
+        path: The file.
+        reading: How to read a text.
+
+    Raises:
+        ValueError: If the file cannot be understood.
+        OSError: If it cannot be read.
+    """
+    content = unpacked(Path(path))
+    kind = kind_of(content, Path(path))
+    if kind == STREAM:
+        return _of_stream(content, path)
+    if kind == PARQUET:
+        file = _opened(content, path)
+        if METADATA_KEY in (file.schema_arrow.metadata or {}):
+            return Noted(_record_in(file, path, None))
+        return _plain_recording(Found(_rows(file, path, file.schema_arrow.names)), path)
+    if kind == ARROW_FILE:
+        with understood(path):
+            found = Found(pa.ipc.open_file(pa.BufferReader(content)).read_all())
+    else:
+        with understood(path, "is no CSV table"):
+            found = text_table(content, reading)
+    return _plain_recording(found, path)
+
+
+def _of_stream(content: bytes, path: str | os.PathLike[str]) -> Noted:
+    """A drive, or another table in an Arrow stream."""
+    stream = _with_rows(sound_batches(content), path)
+    damage = (stream.damage,) if stream.damage else ()
+    table = pa.Table.from_batches(stream.batches)
+    if METADATA_KEY not in (table.schema.metadata or {}):
+        return _plain_recording(Found(table, damage), path)
+    unchecked = () if stream.checked else (_UNCHECKED,)
+    return Noted(_record_of(stream, path), (*damage, *unchecked))
+
+
+_UNCHECKED = (
+    "the stream has no checksums: numbers that damage has changed cannot be told"
+)
 
 
 def read_stream(path: str | os.PathLike[str]) -> TrialRecord:
     """Read the Arrow stream that a drive writes while it goes on.
 
     A drive that was cut off leaves a stream without an end; all of its whole batches
-    are read. What lies beside the batches comes into the metadata: `markers`,
+    are read; of a damaged one those before the damage, which the metadata name as
+    `damage`. What lies beside the batches comes into the metadata: `markers`,
     `started_at` and `ended_at`.
 
     Raises:
         ValueError: If there is not one whole batch of a trial in it.
         OSError: If it cannot be read.
     """
-    stream = whole_batches(Path(path))
+    return _record_of(whole_batches(Path(path)), path)
+
+
+def _record_of(stream: Stream, path: str | os.PathLike[str]) -> TrialRecord:
     table = pa.Table.from_batches(stream.batches)
-    try:
+    with understood(path):
         record = from_table(table, described(table.schema))
         beside = _told_beside(stream)
-    except ValueError as error:
-        raise ValueError(f"{path}: {error}") from error
+    if stream.damage:
+        beside[DAMAGE_KEY] = stream.damage
     return record._replace(metadata=record.metadata | beside)
-
-
-class Stream(NamedTuple):
-    """What can be read of an Arrow stream.
-
-    Attributes:
-        batches: All that are whole.
-        beside: What lies beside each of them.
-    """
-
-    batches: list[pa.RecordBatch]
-    beside: list[dict[bytes, bytes]]
 
 
 def whole_batches(path: Path) -> Stream:
@@ -196,18 +250,13 @@ def whole_batches(path: Path) -> Stream:
         ValueError: If there is none.
         OSError: If it cannot be read.
     """
-    content = path.read_bytes()
-    stream = Stream([], [])
-    try:
-        reader = pa.ipc.open_stream(pa.BufferReader(content))
-        while True:
-            batch, beside = reader.read_next_batch_with_custom_metadata()
-            stream.batches.append(batch)
-            stream.beside.append(dict(beside or {}))
-    except (StopIteration, pa.ArrowException, OSError):
-        pass  # the end, or what a killed process left of a batch
+    return _with_rows(sound_batches(path.read_bytes()), path)
+
+
+def _with_rows(stream: Stream, path: str | os.PathLike[str]) -> Stream:
     if not any(batch.num_rows for batch in stream.batches):
-        raise ValueError(f"{path} holds no row of a drive; it had not begun")
+        why = f"it is damaged: {stream.damage}" if stream.damage else "it had not begun"
+        raise ValueError(f"{path} holds no row of a drive; {why}")
     return stream
 
 
@@ -221,56 +270,38 @@ def _told_beside(stream: Stream) -> dict[str, object]:
     return {"markers": markers, **clock}
 
 
-def _plain_recording(table: pa.Table, path: str | os.PathLike[str]) -> TrialRecord:
-    try:
-        return TrialRecord(metadata={}, columns=plain_columns(table))
-    except ValueError as error:
-        raise ValueError(f"{path}: {error}") from error
+def _plain_recording(found: Found, path: str | os.PathLike[str]) -> Noted:
+    with understood(path):
+        found.table.validate(full=True)
+        columns = plain_columns(found.table)
+    left = [name for name in found.table.column_names if name not in columns]
+    notes = [f"columns of a kind that is not read: {', '.join(left)}"] if left else []
+    if "time" in columns:
+        columns["time"], told = seconds(columns["time"])
+        notes += [told] if told else []
+    record = TrialRecord(metadata={}, columns=columns)
+    return Noted(record, (*found.notes, *notes))
 
 
-def _opened(path: Path) -> pq.ParquetFile:
-    source = path.read_bytes()
-    try:
-        return pq.ParquetFile(pa.BufferReader(source), page_checksum_verification=True)
-    except (pa.ArrowException, OSError) as error:
-        raise ValueError(
-            f"{path} is not a Parquet file, or was cut short: {_first_line(error)}"
-        ) from error
+def _opened(content: bytes, path: str | os.PathLike[str]) -> pq.ParquetFile:
+    with understood(path, "is not a Parquet file, or was cut short"):
+        return pq.ParquetFile(pa.BufferReader(content), page_checksum_verification=True)
 
 
 def _record_in(
     file: pq.ParquetFile, path: str | os.PathLike[str], names: Sequence[str] | None
 ) -> TrialRecord:
     there = file.schema_arrow.names
-    try:
+    with understood(path):
         about = described(file.schema_arrow)
         present = there if names is None else [name for name in there if name in names]
         return from_table(_rows(file, path, present), about, names)
-    except ValueError as error:
-        raise ValueError(f"{path}: {error}") from error
 
 
 def _rows(
     file: pq.ParquetFile, path: str | os.PathLike[str], names: list[str]
 ) -> pa.Table:
-    try:
-        return file.read(columns=names)
-    except (pa.ArrowException, OSError) as error:
-        raise ValueError(f"{path} is damaged: {_first_line(error)}") from error
-
-
-def _csv_table(path: Path) -> pa.Table:
-    # Opened here first, so that a file that cannot be read stays an OSError.
-    with path.open("rb"):
-        pass
-    try:
-        return pyarrow.csv.read_csv(path)
-    except (pa.ArrowException, OSError) as error:
-        raise ValueError(
-            f"{path} is no CSV table: {_first_line(error)}; give UTF-8 with commas "
-            "between columns, decimal points, and names in the first row"
-        ) from error
-
-
-def _first_line(error: BaseException) -> str:
-    return (str(error).splitlines() or [type(error).__name__])[0]
+    with understood(path):
+        table = file.read(columns=names)
+        table.validate(full=True)
+        return table

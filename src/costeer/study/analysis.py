@@ -8,9 +8,12 @@ from typing import NamedTuple
 import numpy as np
 
 from costeer.records.columns import TrialRecord
+from costeer.records.contradictions import contradictions, unwrapped
 from costeer.records.plausible import suspicions
-from costeer.records.record import read_recording
+from costeer.records.record import read_noted
+from costeer.records.tables import AS_FOUND, Reading
 from costeer.study.definitions import DEFAULTS, Columns, Measure, MeasureParameters
+from costeer.study.gaps import bridged
 from costeer.study.measures import Row, lane_change_rows, parameters_of, prepared
 from costeer.study.recordings import (
     AS_IT_IS,
@@ -18,6 +21,7 @@ from costeer.study.recordings import (
     Stretch,
     stretches,
 )
+from costeer.study.rounding import rounding
 from costeer.study.sampling import EVEN_ENOUGH, Sampling, evened, sampling
 from costeer.study.trial_measures import trial_measures
 
@@ -50,23 +54,26 @@ def analyse_file(
     path: str | os.PathLike[str],
     adaptation: Adaptation = AS_IT_IS,
     parameters: MeasureParameters = DEFAULTS,
+    reading: Reading = AS_FOUND,
 ) -> list[Analysis]:
     """Measure every stretch of a file.
 
     Args:
-        path: Trial record, CSV (gzipped too) or Parquet.
+        path: Trial record, CSV, Parquet or Arrow, gzipped or not.
         adaptation: Names, units and stretches of a foreign table.
         parameters: Thresholds of the measures.
+        reading: How to read a text.
 
     Raises:
         ValueError: If the file cannot be understood or is sampled too irregularly.
         OSError: If it cannot be read.
     """
-    recording = read_recording(path)
+    recording, notes = read_noted(path, reading)
     try:
-        return analyse(recording, adaptation, parameters, source=str(path))
+        found = analyse(recording, adaptation, parameters, source=str(path))
     except ValueError as error:
-        raise ValueError(f"{path}: {error}") from error
+        raise ValueError("; ".join([f"{path}: {error}", *notes])) from error
+    return [each._replace(notes=(*notes, *each.notes)) for each in found]
 
 
 def analyse(
@@ -84,6 +91,7 @@ def analyse(
 def _analysed(
     recording: TrialRecord, part: Stretch, parameters: MeasureParameters, source: str
 ) -> Analysis:
+    part, notes = _mended(part)
     found = _sampling(part)
     even = recording._replace(columns=dict(evened(part.columns, found)))
     measures = trial_measures(prepared(even, parameters))
@@ -94,8 +102,20 @@ def _analysed(
         sampling=found,
         measures=measures,
         lane_changes=lane_change_rows(even, parameters),
-        notes=tuple(_notes(even.columns, found, measures, part.ignored)),
+        notes=(
+            *part.notes,
+            *notes,
+            *_notes(even.columns, found, measures, part.ignored),
+        ),
     )
+
+
+def _mended(part: Stretch) -> tuple[Stretch, list[str]]:
+    """A stretch whose yaw is unwrapped and whose short gaps are bridged."""
+    _sampling(part)
+    columns, told = unwrapped(part.columns)
+    columns, gaps = bridged(columns)
+    return part._replace(columns=columns), [*told, *contradictions(columns), *gaps]
 
 
 def _sampling(part: Stretch) -> Sampling:
@@ -131,6 +151,12 @@ def _notes(
         notes.append("swrr is of the whole recording, as lane keeping is not known")
     if not measures["sdlp"].reason and "event" not in columns:
         notes.append("there is no column event, so no overtaking events are left out")
+    step = rounding(columns.get("lateral_position", np.zeros(2)))
+    if step > 0.0:
+        notes.append(
+            f"lateral_position is rounded to {step:.3g} m: its rate is taken over "
+            "several steps"
+        )
     if any(ignored):
         notes.append(f"columns not used: {', '.join(ignored)}")
     return notes

@@ -49,6 +49,8 @@ class MeasureParameters(NamedTuple):
             Source: assumed, as for the lock of the trigger.
         settled_duration: A car is settled if it stays so long straight, within
             `yaw_threshold`, and near the centre [s]. Source: assumed, as above.
+        any_lane: 1 if lane keeping counts in either lane, about its centre; 0 if in the
+            left one alone [-]. Source: the paper, whose drivers keep left.
     """
 
     lane_width: float = 3.5
@@ -68,6 +70,7 @@ class MeasureParameters(NamedTuple):
     episode_duration: float = 10.0
     settled_offset: float = 0.3
     settled_duration: float = 0.5
+    any_lane: float = 0.0
 
 
 DEFAULTS = MeasureParameters()
@@ -85,6 +88,24 @@ class Measure(NamedTuple):
     value: float
     unit: str
     reason: str = ""
+
+
+LEFT_OUT = "left_out"
+"""A column of flags: rows in which what cuts a recording into segments is missing."""
+
+LEAST_DURATION = 1.0
+"""Less driving than this gives no measure [s]. Source: assumed, below any manoeuvre."""
+
+
+def too_short(time: Signal) -> str:
+    """Why a recording is too short to be measured; empty if it is not."""
+    duration = float(time[-1] - time[0]) if time.size else 0.0
+    if duration >= LEAST_DURATION - 1e-6:
+        return ""
+    return (
+        f"{duration:.3g} s with {time.size} rows are too short; record at least "
+        f"{LEAST_DURATION:g} s"
+    )
 
 
 def unknown(unit: str, reason: str) -> Measure:

@@ -25,6 +25,9 @@ from costeer.study.changes import refusal
 STUDY_FILE = "study.yaml"
 LOCK_FILE = ".lock"
 RECORDS = "records"
+_LARGEST = 1_000_000
+"""Values of a configuration; no study has a hundredth of it."""
+
 FORMAT = 1
 """Of the folder; a later one that old code cannot read gets a higher number."""
 
@@ -69,19 +72,47 @@ def read_study(path: Path) -> StudyFolder:
     configuration = content.get("configuration")
     if not isinstance(configuration, dict) or content.get("format") != FORMAT:
         raise ValueError(_unusable(file, f"it is not of format {FORMAT}"))
-    if content.get("configuration_hash") != configuration_hash(configuration):
+    try:
+        found = configuration_hash(configuration)
+    except (TypeError, ValueError, RecursionError) as error:
+        why = "its configuration holds what no study has"
+        raise ValueError(_unusable(file, why)) from error
+    if content.get("configuration_hash") != found:
         raise ValueError(_unusable(file, "its hash does not fit its configuration"))
     return StudyFolder(path, configuration, str(content["configuration_hash"]))
 
 
 def _yaml_mapping(file: Path) -> dict[str, Any]:
+    text = file.read_bytes()
     try:
-        content = yaml.safe_load(file.read_text(encoding="utf-8"))
-    except (yaml.YAMLError, UnicodeDecodeError) as error:
-        raise ValueError(_unusable(file, "it is not YAML")) from error
+        size = _size(yaml.compose(text, yaml.SafeLoader), {})
+        content = yaml.safe_load(text) if size <= _LARGEST else None
+    except Exception as error:  # whatever damage makes the parser raise
+        where = getattr(error, "problem_mark", None)
+        place = f", line {where.line + 1}" if where else ""
+        raise ValueError(_unusable(file, f"it is not YAML{place}")) from error
+    if size > _LARGEST:
+        raise ValueError(_unusable(file, "its references to itself grow too large"))
     if not isinstance(content, dict):
         raise ValueError(_unusable(file, "it is not YAML of a study"))
     return content
+
+
+# Any: nodes of the parser, which has no types for them.
+def _size(node: Any, known: dict[int, int]) -> int:
+    """Number of values once every reference is written out."""
+    if node is None or isinstance(node, yaml.ScalarNode):
+        return 1
+    if id(node) not in known:
+        known[id(node)] = _LARGEST + 1  # of one that holds itself
+        parts = [part for each in node.value for part in _parts(each)]
+        known[id(node)] = 1 + sum(_size(part, known) for part in parts)
+    return known[id(node)]
+
+
+def _parts(value: Any) -> tuple[Any, ...]:
+    """The nodes of an entry: key and value of a mapping, or the item of a list."""
+    return value if isinstance(value, tuple) else (value,)
 
 
 def _unusable(file: Path, why: str) -> str:

@@ -7,7 +7,7 @@ from math import isinf
 import numpy as np
 from jaxtyping import Float
 
-from costeer.study.crossings import excursion, within
+from costeer.study.crossings import excursion, in_left_lane, within
 from costeer.study.definitions import (
     DEFAULTS,
     Columns,
@@ -17,9 +17,11 @@ from costeer.study.definitions import (
     runs,
     unknown,
 )
+from costeer.study.rounding import rounded_rate, rounding
 from costeer.study.segments import DroppedChange, LaneChange, Segments
 
-_NO_KEEPING = "the record has no lane keeping outside lane changes and events"
+_STILL = 1e-6
+"""Slower to the side is no motion [m/s]. Source: assumed, above what rounding makes."""
 
 
 def gathered(values: Signal, stretches: tuple[slice, ...]) -> Signal:
@@ -27,20 +29,38 @@ def gathered(values: Signal, stretches: tuple[slice, ...]) -> Signal:
     return np.concatenate([values[rows] for rows in stretches] or [values[:0]])
 
 
-def sdlp(columns: Columns, segments: Segments) -> Measure:
+def in_lane(columns: Columns, parameters: MeasureParameters = DEFAULTS) -> Signal:
+    """Position from the centre of the lane that is kept [m], shape `(time,)`."""
+    position = np.asarray(columns["lateral_position"])
+    if not parameters.any_lane:
+        return position
+    right = ~in_left_lane(columns, parameters)
+    return np.asarray(position + parameters.lane_width * right)
+
+
+def sdlp(
+    columns: Columns, segments: Segments, parameters: MeasureParameters = DEFAULTS
+) -> Measure:
     """Standard deviation of the lane position [m], Eq. (12), Sec. III-F.
 
     All lane keeping of the trial together, about its one mean, with n - 1.
     """
-    position = gathered(columns["lateral_position"], segments.lane_keeping)
+    position = gathered(in_lane(columns, parameters), segments.lane_keeping)
     if position.size < 2:
-        return unknown("m", _NO_KEEPING)
+        return unknown("m", segments.no_keeping)
     return Measure(value=float(np.std(position, ddof=1)), unit="m")
 
 
 def lateral_speed(columns: Columns) -> Signal:
-    """Rate of the lateral position [m/s], left positive, shape `(time,)`."""
-    return np.asarray(np.gradient(columns["lateral_position"], columns["time"]))
+    """Rate of the lateral position [m/s], left positive, shape `(time,)`.
+
+    Of a position that is rounded, it is taken from where the last digit changes.
+    """
+    time, position = columns["time"], columns["lateral_position"]
+    step = rounding(position)
+    if step > 0.0:
+        return rounded_rate(time, position, step)
+    return np.asarray(np.gradient(position, time))
 
 
 def time_to_line_crossing(
@@ -64,8 +84,10 @@ def time_to_line_crossing(
     """
     room = (parameters.lane_width - parameters.car_width) / 2.0
     gap = room - np.sign(speed) * position
-    with np.errstate(divide="ignore"):
-        return np.asarray(np.maximum(gap, 0.0) / np.abs(speed))
+    moving = np.where(np.abs(speed) < _STILL, 0.0, np.abs(speed))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        times = np.maximum(gap, 0.0) / moving
+    return np.asarray(np.where(gap <= 0.0, 0.0, times))
 
 
 def times_to_line_crossing(
@@ -75,13 +97,22 @@ def times_to_line_crossing(
     parameters: MeasureParameters = DEFAULTS,
 ) -> tuple[Measure, Measure]:
     """Least and median time to line crossing in lane keeping [s]."""
-    position = gathered(columns["lateral_position"], segments.lane_keeping)
+    position = gathered(in_lane(columns, parameters), segments.lane_keeping)
     moving = gathered(speed, segments.lane_keeping)
     kept = time_to_line_crossing(position, moving, parameters)
     if kept.size == 0:
-        return unknown("s", _NO_KEEPING), unknown("s", _NO_KEEPING)
+        reason = unknown("s", segments.no_keeping)
+        return reason, reason
     least, median = float(kept.min()), float(np.median(kept))
-    return Measure(value=least, unit="s"), Measure(value=median, unit="s")
+    return _finite(least, ""), _finite(median, " in half of the samples or more")
+
+
+def _finite(seconds: float, when: str) -> Measure:
+    """A time, or that it never comes."""
+    if isinf(seconds):
+        why = f"the car does not move sideways{when}: no line is reached"
+        return unknown("s", why)
+    return Measure(value=seconds, unit="s")
 
 
 def lane_departures(

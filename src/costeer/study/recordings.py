@@ -11,6 +11,9 @@ from numpy.typing import NDArray
 
 from costeer.records.checks import converted
 from costeer.records.columns import COLUMNS_BY_NAME
+from costeer.records.contradictions import joined
+from costeer.records.names import empty_told, groups
+from costeer.records.times import no_time, seconds, without_repeated
 from costeer.study.definitions import Columns
 
 
@@ -21,12 +24,18 @@ class Adaptation(NamedTuple):
         renames: Name there to name here.
         scales: Name here to the factor that gives SI units.
         sequence: Column, as named there, that tells separate stretches apart; empty
-            if the table is one stretch, or has a column `sequence`.
+            if the table is one stretch, or has a column `sequence`, or several
+            participants.
+        join_lanes: Whether the lateral position is from the centre of the lane driven
+            in, and jumps at each crossing.
+        drop_repeated: Whether of rows with the same time only the first is kept.
     """
 
     renames: Mapping[str, str] = {}
     scales: Mapping[str, float] = {}
     sequence: str = ""
+    drop_repeated: bool = False
+    join_lanes: bool = False
 
 
 AS_IT_IS = Adaptation()
@@ -39,11 +48,17 @@ class Stretch(NamedTuple):
         name: Value of the sequence column; empty if there is none.
         columns: Those that are known, in their own types, shape `(time,)` each.
         ignored: Names of the others.
+        notes: What was made of the table's columns.
     """
 
     name: str
     columns: Columns
     ignored: tuple[str, ...]
+    notes: tuple[str, ...] = ()
+
+
+_NEEDED = ("time", "lateral_position", "yaw_angle", "steering_wheel_angle")
+"""Columns that the measures rest on; one that cannot be read is refused."""
 
 
 def stretches(
@@ -62,30 +77,68 @@ def stretches(
         ValueError: If a name is not there, there is no `time`, or a column holds
             what it cannot.
     """
-    key = adaptation.sequence or ("sequence" if "sequence" in columns else "")
+    key = adaptation.sequence or _key(columns)
     if key and key not in columns:
         raise ValueError(_no_column("--sequence", key, columns))
     renamed = _scaled(_renamed(columns, adaptation.renames), adaptation.scales)
-    known = {k: _as_kind(k, v) for k, v in renamed.items() if k in COLUMNS_BY_NAME}
+    known, notes = _known(renamed)
     if "time" not in known:
-        raise ValueError(_no_time(columns))
-    ignored = tuple(name for name in renamed if name not in known and name != key)
-    if not key:
-        return (Stretch(name="", columns=known, ignored=ignored),)
+        raise ValueError(no_time(columns))
+    ignored = tuple(k for k in renamed if k not in COLUMNS_BY_NAME and k != key)
+    parts = [("", known)]
+    if key:
+        notes += empty_told(key, columns[key])
+        parts = [
+            (name, {k: values[rows] for k, values in known.items()})
+            for name, rows in groups(columns[key])
+        ]
     return tuple(
-        Stretch(
-            name=str(value),
-            columns={name: values[rows] for name, values in known.items()},
-            ignored=ignored,
-        )
-        for value, rows in _groups(columns[key])
+        _stretch(Stretch(name, part, ignored, tuple(notes)), adaptation)
+        for name, part in parts
     )
 
 
-# Any, here and below: the element type differs from column to column.
-def _groups(keys: NDArray[Any]) -> list[tuple[Any, NDArray[np.intp]]]:
-    values, firsts, codes = np.unique(keys, return_index=True, return_inverse=True)
-    return [(values[i], np.flatnonzero(codes == i)) for i in np.argsort(firsts)]
+def _key(columns: Columns) -> str:
+    """The column that tells stretches apart, if nobody names it."""
+    if "sequence" in columns:
+        return "sequence"
+    several = "participant" in columns and len(groups(columns["participant"])) > 1
+    return "participant" if several else ""
+
+
+def _stretch(part: Stretch, adaptation: Adaptation) -> Stretch:
+    """The stretch as the user wants it: without repeated times, lanes joined."""
+    columns = dict(part.columns)
+    told: list[str] = []
+    if adaptation.drop_repeated:
+        columns, told = without_repeated(columns)
+    if adaptation.join_lanes and "lateral_position" in columns:
+        columns = joined(columns)
+    return part._replace(columns=columns, notes=(*part.notes, *told))
+
+
+def _known(columns: Columns) -> tuple[dict[str, NDArray[Any]], list[str]]:
+    """Columns of a record in their own types, and notes on those that cannot be.
+
+    Raises:
+        ValueError: If a column that the measures rest on cannot be.
+    """
+    known: dict[str, NDArray[Any]] = {}
+    notes = []
+    for name in columns:
+        if name not in COLUMNS_BY_NAME:
+            continue
+        values = columns[name]
+        if name == "time":
+            values, told = seconds(values)
+            notes += [told] if told else []
+        try:
+            known[name] = _as_kind(name, values)
+        except ValueError as error:
+            if name in _NEEDED:
+                raise
+            notes.append(f"{name} is not used: {error}")
+    return known, notes
 
 
 def _renamed(columns: Columns, renames: Mapping[str, str]) -> dict[str, NDArray[Any]]:
@@ -118,14 +171,6 @@ def _scaled(columns: Columns, scales: Mapping[str, float]) -> dict[str, NDArray[
 
 def _no_column(option: str, name: str, columns: Columns) -> str:
     return f"{option} {name}: there is no such column; there are {', '.join(columns)}"
-
-
-def _no_time(columns: Columns) -> str:
-    return (
-        "there is no column 'time' [s]; rename yours (on the command line, for "
-        "example, --rename t=time); "
-        f"there are {', '.join(columns)}"
-    )
 
 
 def _as_kind(name: str, values: NDArray[Any]) -> NDArray[Any]:

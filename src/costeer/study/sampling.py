@@ -5,14 +5,15 @@ from typing import NamedTuple
 import numpy as np
 
 from costeer.records.checks import check_time
+from costeer.records.times import LONGEST_STEP, check_steps
 from costeer.study.definitions import Columns, Signal
 
-LONGEST_STEP = 0.25
-"""Largest time between two samples [s]; longer ones cannot be bridged. Source:
-assumed, a seventh of the period at the 0.6 Hz of the reversal rate."""
 EVEN_ENOUGH = 0.05
 """Steps that differ less from their mean, as a share of it, are left as they are.
 Source: assumed; the reversal rate then errs by less than its sampling does."""
+
+
+__all__ = ["EVEN_ENOUGH", "LONGEST_STEP", "Sampling", "evened", "sampling"]
 
 
 class Sampling(NamedTuple):
@@ -44,14 +45,11 @@ def sampling(time: Signal) -> Sampling:
     check_time(time)
     steps = np.diff(time)
     longest, mean = float(steps.max()), float(steps.mean())
-    if longest > LONGEST_STEP:
-        row = int(steps.argmax())
-        raise ValueError(
-            f"{longest:g} s pass between rows {row} and {row + 1}, at most "
-            f"{LONGEST_STEP:g} s can be bridged; tell its parts apart by a column "
-            "'sequence', or, if time is in milliseconds, multiply it by 0.001 (on the "
-            "command line: --scale time=0.001)"
-        )
+    check_steps(
+        steps,
+        "tell its parts apart by a column 'sequence', or, if time is in milliseconds, "
+        "multiply it by 0.001 (on the command line: --scale time=0.001)",
+    )
     unevenness = float(np.abs(steps / mean - 1.0).max())
     return Sampling(rate=1.0 / mean, unevenness=unevenness, longest_step=longest)
 

@@ -18,12 +18,15 @@ from costeer.study.crossings import (
 )
 from costeer.study.definitions import (
     DEFAULTS,
+    LEAST_DURATION,
+    LEFT_OUT,
     Columns,
     Flags,
     MeasureParameters,
     Signal,
     incomplete,
     runs,
+    too_short,
 )
 
 SEGMENT_COLUMNS = ("time", "lateral_position", "yaw_angle")
@@ -74,6 +77,7 @@ class Segments(NamedTuple):
         dropped: Crossings that make no lane change, with reasons.
         lane_keeping: Rows of each stretch of lane keeping.
         num_events: Overtaking events the car was in.
+        no_keeping: Why there is no lane keeping; empty if there is.
     """
 
     crossings: tuple[Crossing, ...]
@@ -81,6 +85,7 @@ class Segments(NamedTuple):
     dropped: tuple[DroppedChange, ...]
     lane_keeping: tuple[slice, ...]
     num_events: int
+    no_keeping: str = ""
 
 
 def segment(
@@ -96,23 +101,42 @@ def segment(
     Returns:
         The segments, or the reason why there are none.
     """
-    reason = incomplete(columns, *SEGMENT_COLUMNS)
+    reason = incomplete(columns, *SEGMENT_COLUMNS) or too_short(columns["time"])
     if reason:
         return reason
     crossings = line_crossings(columns, parameters)
     changes, dropped = _sorted_changes(columns, parameters, crossings)
     spans = [(change.start_time, change.end_time) for change in changes]
     spans += [(drop.start_time, drop.end_time) for drop in dropped]
-    keeping = in_left_lane(columns, parameters)
-    keeping &= ~_near(columns["time"], spans, parameters.lane_change_margin)
+    inside = in_left_lane(columns, parameters) | bool(parameters.any_lane)
+    keeping = inside & ~_near(columns["time"], spans, parameters.lane_change_margin)
     keeping &= ~event_zone(columns)
+    if LEFT_OUT in columns:
+        keeping &= ~columns[LEFT_OUT]
+    no_keeping = _no_keeping(columns["time"], inside, keeping)
     return Segments(
         crossings=crossings,
         changes=changes,
         dropped=dropped,
-        lane_keeping=tuple(runs(keeping)),
+        lane_keeping=() if no_keeping else tuple(runs(keeping)),
         num_events=_num_events(columns),
+        no_keeping=no_keeping,
     )
+
+
+def _no_keeping(time: Signal, inside: Flags, keeping: Flags) -> str:
+    """Why there is no lane keeping; empty if there is."""
+    if not inside.any():
+        return (
+            "the car is never in the left lane, where lane keeping is measured; to "
+            "measure the lane driven in, set any_lane (on the command line: --any-lane)"
+        )
+    seconds = float(keeping.sum() * (time[-1] - time[0]) / (time.size - 1))
+    if keeping.any() and seconds < LEAST_DURATION:
+        return f"{seconds:.3g} s of lane keeping are too short to be measured"
+    if not keeping.any():
+        return "the record has no lane keeping outside lane changes and events"
+    return ""
 
 
 def _sorted_changes(

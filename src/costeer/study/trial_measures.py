@@ -14,6 +14,10 @@ from costeer.study.definitions import (
     MeasureParameters,
     Signal,
     incomplete,
+    is_defined,
+    missing,
+    runs,
+    too_short,
     unknown,
 )
 from costeer.study.detection import Detection, detect
@@ -87,27 +91,33 @@ def _lane_keeping(trial: Trial) -> Measures:
 def _position_deviation(trial: Trial) -> Measure:
     if isinstance(trial.segments, str):
         return unknown("m", trial.segments)
-    return sdlp(trial.columns, trial.segments)
+    return sdlp(trial.columns, trial.segments, trial.parameters)
 
 
 def _reversal_rate(trial: Trial) -> Measure:
     """In lane keeping; over the whole recording where lane keeping is not known."""
-    reason = incomplete(trial.columns, "time", "steering_wheel_angle")
+    reason = missing(trial.columns, "time", "steering_wheel_angle")
+    reason = reason or too_short(trial.columns["time"])
     if reason:
         return unknown("1/min", reason)
     angle = trial.columns["steering_wheel_angle"]
-    stretches: tuple[slice, ...] = (slice(None),)
+    measured = is_defined(angle)
     if isinstance(trial.segments, Segments):
-        stretches = trial.segments.lane_keeping
+        if trial.segments.no_keeping:
+            return unknown("1/min", trial.segments.no_keeping)
+        kept = np.zeros(angle.size, bool)
+        for rows in trial.segments.lane_keeping:
+            kept[rows] = True
+        measured &= kept
     return steering_wheel_reversal_rate(
-        [angle[rows] for rows in stretches],
+        [angle[rows] for rows in runs(measured)],
         sampling_rate(trial.columns["time"]),
         trial.parameters,
     )
 
 
 def _torque(trial: Trial) -> Measure:
-    return _of_column(trial, "driver_torque", "N·m", rms)
+    return _of_column(trial, "driver_torque", "N·m", rms, gaps=True)
 
 
 def _line_crossing_times(trial: Trial) -> Measures:
@@ -124,17 +134,26 @@ def _course(trial: Trial) -> Measures:
     return {
         "duration": _of_column(trial, "time", "s", _extent),
         "distance": _of_column(trial, "longitudinal_position", "m", _extent),
-        "mean_speed": _of_column(trial, "longitudinal_velocity", "m/s", _mean),
+        "mean_speed": _of_column(
+            trial, "longitudinal_velocity", "m/s", _mean, gaps=True
+        ),
     }
 
 
 def _of_column(
-    trial: Trial, name: str, unit: str, measure: Callable[[Signal], float]
+    trial: Trial,
+    name: str,
+    unit: str,
+    measure: Callable[[Signal], float],
+    gaps: bool = False,
 ) -> Measure:
-    reason = incomplete(trial.columns, name)
+    reason = (missing if gaps else incomplete)(trial.columns, name)
+    if gaps and not reason:
+        reason = too_short(trial.columns["time"])
     if reason:
         return unknown(unit, reason)
-    return Measure(value=measure(trial.columns[name]), unit=unit)
+    values = trial.columns[name]
+    return Measure(value=measure(values[is_defined(values)]), unit=unit)
 
 
 def _extent(values: Signal) -> float:

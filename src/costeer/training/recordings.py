@@ -25,9 +25,12 @@ from costeer.intention.features import (
     feature_series,
     mirrored,
 )
-from costeer.records.checks import text_told
+from costeer.records.checks import check_time, text_told
+from costeer.records.contradictions import contradictions, unwrapped
+from costeer.records.names import empty_told, groups, names_of
 from costeer.records.plausible import suspicions
-from costeer.records.record import TrialRecord, read_recording
+from costeer.records.record import TrialRecord, read_noted
+from costeer.records.times import likely_times, without_repeated
 from costeer.training.labels import Labels, labels
 from costeer.training.tables import (
     Columns,
@@ -36,6 +39,7 @@ from costeer.training.tables import (
     crossings_of,
     remarks,
     resampled,
+    uneven_told,
     with_distance,
 )
 
@@ -95,6 +99,7 @@ def runs(driver: str, name: str, columns: Columns) -> list[Recording]:
             60 Hz.
     """
     _check(name, columns)
+    columns, told = unwrapped(columns)
     columns = with_distance(columns)
     crossing = crossings_of(name, columns)
     return [
@@ -106,7 +111,11 @@ def runs(driver: str, name: str, columns: Columns) -> list[Recording]:
             crossing=crossing,
             intended=_intended(crossing, course.side, columns),
             labels=labels(crossing, course.side),
-            notes=_notes(name, columns),
+            notes=(
+                *(f"{name}: {each}" for each in told),
+                *_contradicting(name, columns),
+                *_notes(name, columns),
+            ),
             absent=absent_signals(columns),
         )
         for course in courses(name, columns)
@@ -120,6 +129,11 @@ def _notes(name: str, columns: Columns) -> tuple[str, ...]:
         for each in suspicions(columns)
     ]
     return (*units, *remarks(name, columns))
+
+
+def _contradicting(name: str, columns: Columns) -> list[str]:
+    """What the columns of one stretch say against each other."""
+    return [f"{name}: {each}" for each in contradictions(columns)]
 
 
 def lacking(recording: Recording, absent: Sequence[str]) -> Recording:
@@ -195,6 +209,13 @@ def _check(name: str, columns: Columns) -> None:
 def _check_names(name: str, columns: Columns) -> None:
     """Refuse a table without what every stretch needs."""
     missing = [column for column in _NEEDED if column not in columns]
+    if "time" in missing:
+        near = likely_times(columns)
+        likely = f"it may be {' or '.join(near[:3])}; " if near else ""
+        raise ValueError(
+            f"{name} has no column time [s]; {likely}name it so in the file; there are "
+            f"{', '.join(columns)}"
+        )
     if missing:
         raise ValueError(
             f"{name} has no column {', '.join(missing)}; names are those of the trial "
@@ -210,6 +231,8 @@ def _check_rate(name: str, columns: Columns) -> None:
     steps = np.diff(np.asarray(columns["time"], np.float64))
     wrong = np.flatnonzero(~(np.abs(steps * SAMPLE_RATE - 1.0) < _RATE_TOLERANCE))
     if wrong.size:
+        if steps[wrong[0]] <= 0.0:
+            check_time(np.asarray(columns["time"], np.float64))
         raise ValueError(
             f"{name}: {steps[wrong[0]]:.6g} s lie between rows {wrong[0]} and "
             f"{wrong[0] + 1}; the network needs {SAMPLE_RATE:g} rows a second without "
@@ -224,14 +247,19 @@ def _check_numbers(name: str, column: str, values: NDArray[Any]) -> None:
 
 
 def recordings_of(
-    record: TrialRecord, name: str, resample: bool = False
+    record: TrialRecord,
+    name: str,
+    resample: bool = False,
+    told: Sequence[str] = (),
 ) -> list[Recording]:
     """The stretches of a trial record or of a table.
 
     Args:
         record: As `read_recording` gives it.
         name: For messages.
-        resample: Bring a table of another rate to 60 Hz.
+        resample: Bring a table of another rate to 60 Hz; a row that repeats the time
+            of the row before is left out.
+        told: Notes on how the file was read.
 
     Returns:
         Notes on the whole table stand with the first.
@@ -239,21 +267,37 @@ def recordings_of(
     Raises:
         ValueError: As `runs` does.
     """
-    columns = record.columns
+    columns, before = record.columns, [f"{name}: {each}" for each in told]
     if record.metadata:
         driver = f"{record.metadata['seed']}-{record.metadata['participant']}"
-        return runs(driver, name, columns)
+        return _with_notes(runs(driver, name, columns), before)
     _check_names(name, columns)
-    parts = [(name, dict(columns))]
-    if "sequence" in columns:
-        parts = [(f"{name}:{label}", part) for label, part in _stretches(columns)]
+    parts = _stretches(name, columns)
+    for key in (key for key in _KEYS if key in columns):
+        before += [f"{name}: {each}" for each in empty_told(key, columns[key])]
     if resample:
-        parts = [(label, resampled(label, part)) for label, part in parts]
+        cleaned = [(label, *without_repeated(part)) for label, part in parts]
+        before += [f"{label}: {each}" for label, _, notes in cleaned for each in notes]
+        for label, part, _ in cleaned:
+            before += uneven_told(label, part)
+        parts = [(label, resampled(label, part)) for label, part, _ in cleaned]
     found = [
         one for label, part in parts for one in runs(_driver(part, label), label, part)
     ]
-    notes = (*_notes(name, columns), *_too_short(name, found))
+    columns, wrapped = unwrapped(columns)
+    before += [f"{name}: {each}" for each in wrapped]
+    for label, part in parts:
+        before += _contradicting(label, unwrapped(part)[0])
+    notes = (*before, *_notes(name, columns), *_too_short(name, found))
     return [r._replace(notes=() if i else notes) for i, r in enumerate(found)]
+
+
+def _with_notes(found: list[Recording], notes: Sequence[str]) -> list[Recording]:
+    """Notes on a file before those of its recordings."""
+    return [
+        one._replace(notes=(*notes, *one.notes)) if i == 0 else one
+        for i, one in enumerate(found)
+    ]
 
 
 def _too_short(name: str, found: Sequence[Recording]) -> list[str]:
@@ -267,21 +311,33 @@ def _too_short(name: str, found: Sequence[Recording]) -> list[str]:
     ]
 
 
-def _stretches(columns: Columns) -> list[tuple[str, dict[str, NDArray[Any]]]]:
-    """Rows of each value of `sequence`, in the order of the file."""
-    sequence = np.ma.getdata(columns["sequence"])
-    _, first = np.unique(sequence, return_index=True)
-    parts = []
-    for label in sequence[np.sort(first)]:
-        rows = sequence == label
-        parts.append((str(label), {name: v[rows] for name, v in columns.items()}))
+_KEYS = ("sequence", "participant")
+"""Columns that tell stretches and drivers apart."""
+
+
+def _stretches(
+    name: str, columns: Columns
+) -> list[tuple[str, dict[str, NDArray[Any]]]]:
+    """Rows of each value of `sequence`, and of each driver, in order."""
+    parts = [(name, dict(columns))]
+    for key in _KEYS:
+        split = []
+        for label, part in parts:
+            found = groups(part[key]) if key in part else []
+            if key == "participant" and len(found) < 2:
+                found = []
+            split += [
+                (f"{label}:{one}", {k: v[rows] for k, v in part.items()})
+                for one, rows in found
+            ] or [(label, part)]
+        parts = split
     return parts
 
 
 def _driver(columns: Columns, otherwise: str) -> str:
     """The participant, if the table names one; else each stretch is its own driver."""
     if "participant" in columns:
-        return str(np.ma.getdata(columns["participant"])[0])
+        return str(names_of(columns["participant"])[0])
     return otherwise
 
 
@@ -298,5 +354,6 @@ def read_recordings(paths: Sequence[Path], resample: bool = False) -> list[Recor
     """
     found = []
     for path in paths:
-        found += recordings_of(read_recording(path), str(path), resample)
+        record, told = read_noted(path)
+        found += recordings_of(record, str(path), resample, told)
     return found

@@ -16,11 +16,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from costeer.intention.features import SAMPLE_RATE
+from costeer.records.checks import check_time
+from costeer.records.times import check_steps
 
 Series = NDArray[np.float64]
 
 _TINY = 1e-6  # of a sample: times in a table are rounded
-_EVEN = 0.05  # of a period
+EVEN = 0.05  # of a period
 
 
 class Grid(NamedTuple):
@@ -43,36 +45,53 @@ class Grid(NamedTuple):
 
 
 def grid(name: str, time: Series) -> Grid:
-    """The 60 Hz samples that a stretch of even rows allows.
+    """The 60 Hz samples that a stretch allows.
+
+    Rows that are not evenly spaced, for their times are rounded or a frame was lost,
+    are interpolated as late as the longest step between two of them is.
 
     Args:
         name: Of the stretch, for messages.
         time: Of the rows, `(row,)` [s]; at least two.
 
     Raises:
-        ValueError: If the rows are not evenly spaced.
+        ValueError: If time does not increase, or a step is too long to be bridged.
     """
+    _check(name, time)
     steps = np.diff(time)
-    period = float(np.median(steps))
-    uneven = np.flatnonzero(~(np.abs(steps - period) < _EVEN * period))
-    if uneven.size:
-        raise ValueError(
-            f"{name}: {steps[uneven[0]]:.6g} s lie between rows {uneven[0]} and "
-            f"{uneven[0] + 1}, elsewhere {period:.6g} s; cut the stretch there"
-        )
     period = float(time[-1] - time[0]) / len(steps)
-    rate = period * SAMPLE_RATE
-    num = int((len(steps) - 1) * rate + _TINY)
-    place = np.maximum(len(steps) - 1 - np.arange(num, -1, -1) / rate, 0.0) + _TINY
-    earlier = place.astype(np.int64)
-    share = np.where(place - earlier < 2.0 * _TINY, 0.0, place - earlier - _TINY)
+    if (np.abs(steps - period) < EVEN * period).all():
+        time = time[-1] - period * np.arange(len(steps), -1.0, -1.0)
+    longest = float(np.diff(time).max())
+    first = time[1] if longest < (1.0 + EVEN) * period else time[0] + longest
+    num = int((time[-1] - first) * SAMPLE_RATE + _TINY)
+    samples = time[-1] - np.arange(num, -1, -1) / SAMPLE_RATE
+    slack = _TINY * period
+    wanted = samples - longest + slack
+    earlier = np.clip(np.searchsorted(time, wanted, "right") - 1, 0, len(steps) - 1)
+    share = (wanted - time[earlier]) / np.diff(time)[earlier]
+    share = np.where(share < 2.0 * _TINY, 0.0, share - _TINY)
+    latest = np.searchsorted(time, samples + slack, "right") - 1
     return Grid(
-        start=float(time[-1]) - num / SAMPLE_RATE,
+        start=float(samples[0]),
         period=period,
         earlier=earlier,
-        share=share,
-        latest=earlier + 1,
+        share=np.clip(share, 0.0, 1.0),
+        latest=latest,
     )
+
+
+def _check(name: str, time: Series) -> None:
+    """Refuse what `costeer analyse` refuses too.
+
+    Raises:
+        ValueError: If time does not increase, or a step is too long.
+    """
+    try:
+        check_time(time)
+        check_steps(np.diff(time), "cut the stretch there")
+    except ValueError as error:
+        raise ValueError(f"{name}: {error}") from error
 
 
 def delayed(grid: Grid, values: Series, jumps: NDArray[np.bool_]) -> Series:
@@ -87,8 +106,9 @@ def delayed(grid: Grid, values: Series, jumps: NDArray[np.bool_]) -> Series:
     Returns:
         Shape `(time,)`; NaN where a row that is needed is.
     """
-    share = np.where(jumps[grid.latest], 0.0, grid.share)
-    before, after = values[grid.earlier], values[grid.latest]
+    later = grid.earlier + 1
+    share = np.where(jumps[later], 0.0, grid.share)
+    before, after = values[grid.earlier], values[later]
     line = before + share * (after - before)
     return np.asarray(np.where(share == 0.0, before, line))
 

@@ -24,7 +24,7 @@ from costeer.intention.features import (
 )
 from costeer.records.columns import COLUMN_NAMES
 from costeer.training.labels import crossings
-from costeer.training.resample import delayed, grid, held, sample_at
+from costeer.training.resample import EVEN, delayed, grid, held, sample_at
 
 Columns = Mapping[str, NDArray[Any]]  # Any: floats, lanes or labels
 
@@ -85,18 +85,25 @@ def crossings_of(name: str, columns: Columns) -> NDArray[np.int8]:
         ValueError: If the table does not tell when lanes are crossed, or a lane cannot
             be.
     """
-    from_lanes = crossings(lanes(name, columns)) if "lane" in columns else None
+    if "lane" in columns and not ("crossing" in columns and _has_gaps(columns)):
+        from_lanes = crossings(lanes(name, columns))
+        if "crossing" not in columns:
+            return from_lanes
     if "crossing" in columns:
         return whole(
             name, columns, "crossing", (-1, 0, 1), "-1 (right), 0 or +1 (left)"
         )
-    if from_lanes is not None:
-        return from_lanes
     raise ValueError(
         f"{name} has no column crossing and no column lane; one of them must tell when "
         "the car crosses: -1 (right) or +1 (left) at the first row in the new lane, "
         "else 0"
     )
+
+
+def _has_gaps(columns: Columns) -> bool:
+    """Whether the lane is not known in some rows."""
+    values = np.ma.filled(columns["lane"].astype(np.float64), np.nan)
+    return bool(np.isnan(values).any())
 
 
 def lanes(name: str, columns: Columns) -> NDArray[np.int64]:
@@ -179,6 +186,7 @@ def remarks(name: str, columns: Columns) -> list[str]:
         for words in (
             _unknown(columns),
             _sides(columns),
+            _lane_gaps(columns),
             *_gaps(columns),
         )
         if words
@@ -196,6 +204,12 @@ def _unknown(columns: Columns) -> str:
     meant = [f"did you mean {m[0]} by {c}?" for c, m in near.items() if m]
     text = f"no name of a trial record and not used: {', '.join(odd)}"
     return "; ".join([text, *meant])
+
+
+def _lane_gaps(columns: Columns) -> str:
+    if "lane" in columns and "crossing" in columns and _has_gaps(columns):
+        return "lane is empty in some rows and not used"
+    return ""
 
 
 def _sides(columns: Columns) -> str:
@@ -227,6 +241,17 @@ def _gaps(columns: Columns) -> list[str]:
     return found
 
 
+def uneven_told(name: str, columns: Columns) -> list[str]:
+    """A note on rows that are not evenly spaced, if they are not."""
+    steps = np.diff(np.asarray(columns["time"], np.float64))
+    if not steps.size or np.abs(steps / steps.mean() - 1.0).max() <= EVEN:
+        return []
+    return [
+        f"{name}: unevenly sampled, steps up to {steps.max():.3g} s: signals come as "
+        "late as the longest"
+    ]
+
+
 def resampled(name: str, columns: Columns) -> dict[str, NDArray[Any]]:
     """A stretch of even rows at 60 Hz, without a look ahead.
 
@@ -241,7 +266,7 @@ def resampled(name: str, columns: Columns) -> dict[str, NDArray[Any]]:
         Shape `(time,)` each; columns of other kinds are left out.
 
     Raises:
-        ValueError: If rows are not evenly spaced.
+        ValueError: If time does not increase, or a step is too long to be bridged.
     """
     time = np.asarray(columns["time"], np.float64)
     if len(time) < 3:
