@@ -124,3 +124,18 @@ def test_without_a_torque_the_last_verdict_stays(lost: int, value: float) -> Non
         gap = [value if k == lost else last[k] for k in range(3)]
         verdicts = judged([*[conflict] * 70, last, tuple(gap), last])
         assert [v.consistent for v in verdicts[-3:]] == [consistent] * 3
+
+
+def test_the_numbers_are_those_of_the_decisions() -> None:
+    usual = ConsistencyParameters()
+    assert usual.inconsistency_threshold == 0.025  # docs/decisions/0006-threshold.md
+    assert usual.hands_on_threshold == 0.1
+    assert initial_state().consistent
+
+
+def test_a_hold_time_of_whole_steps_holds_no_step_more() -> None:
+    # Three steps: the verdict may turn again at the third.
+    held = PARAMETERS._replace(hold_time=3.0 * DT)
+    turned = initial_state()._replace(consistent=False, time_in_verdict=DT)
+    verdicts = judged([(1.0, 1.0, 5.0)] * 5, held, turned)
+    assert [v.consistent for v in verdicts] == [False] * 2 + [True] * 3
