@@ -9,7 +9,6 @@ import sys
 import time
 from collections.abc import Callable, Iterator
 from contextlib import suppress
-from multiprocessing.shared_memory import SharedMemory
 from pathlib import Path
 
 import numpy as np
@@ -139,16 +138,6 @@ def test_drive_keeps_to_the_clock_with_verdicts_and_leaves_its_record(
     assert np.isnan(columns["crossing_probability"][:170]).all()  # window not full
     assert (tmp_path / "trial.wheel.parquet").exists()
     assert [kept.kinds()[0], kept.kinds()[-1]] == ["started", "ended"]
-
-
-@pytest.fixture
-def torque_cell() -> Iterator[tuple[str, NDArray[np.float64]]]:
-    memory = SharedMemory(create=True, size=8)
-    cell: NDArray[np.float64] = np.ndarray(1, np.float64, memory.buf)
-    cell[0] = 0.0
-    yield memory.name, cell
-    del cell
-    memory.unlink()
 
 
 @pytest.mark.slow

@@ -27,7 +27,7 @@ from costeer.runtime.setup import DriveSetup, check_drive, drive_parameters
 from costeer.runtime.shared import Shared, close_shared, make_shared, open_shared
 from costeer.runtime.states import Fault, RunState
 from costeer.runtime.verdicts import run_network
-from costeer.runtime.watchdog import Watched, run_watchdog
+from costeer.runtime.watchdog import Watch, Watched, run_watchdog, stands_still
 
 START_PATIENCE = 180.0
 """The first start compiles for a minute on a slow machine [s]."""
@@ -110,6 +110,7 @@ class Drive:
         self._stopping = threading.Event()
         self._head_stop = self._context.Event()
         self._out_of_order = ""
+        self._watch: Watch | None = None
         self.priority = ""
 
     # From start to stop
@@ -126,6 +127,7 @@ class Drive:
         self._realtime = self._spawned(run_realtime, self.setup, links)
         watched = Watched(memory, self.pid, self.setup.wheel)
         self._helpers["watchdog"] = self._spawned(run_watchdog, watched)
+        self._watch = Watch(watched, self.shared.mailbox)
         if self.setup.intention == "network":
             absent = ("head_yaw",) if self.setup.head is None else ()
             road = drive_parameters(self.setup).road
@@ -263,6 +265,7 @@ class Drive:
         next_frame = 0
         while not self._closing.is_set():
             self._live()
+            self._stand_in()
             try:
                 self._wake.recv(4096)
             except TimeoutError:
@@ -272,6 +275,12 @@ class Drive:
             next_frame, frames = self.shared.frames.since(next_frame)
             for frame in frames:
                 self._listener.frame(frame)
+
+    def _stand_in(self) -> None:
+        """Look after the loop in place of a watchdog that stands still."""
+        now = time.perf_counter()
+        if self._watch and stands_still(self.shared.mailbox, now):
+            self._watch.look(now)
 
     def _hear(self) -> None:
         """Pass on what the real-time process says; notice who is gone."""

@@ -16,15 +16,11 @@ from typing import Any
 import numpy as np
 
 from costeer.devices.head.source import STALE_AFTER
-from costeer.devices.wheels.calibration import WheelCalibration
-from costeer.devices.wheels.interface import (
-    Wheel,
-    WheelDescription,
-    WheelLost,
-)
+from costeer.devices.wheels.interface import EFFECT_LIFE, WheelLost
 from costeer.devices.wheels.registry import open_wheel
 from costeer.plant.road import adjacent_side
 from costeer.records.row import ROW_COLUMNS
+from costeer.runtime.bay import Bay, Opener
 from costeer.runtime.cabin import Cabin, Controls
 from costeer.runtime.choices import Choices
 from costeer.runtime.frame import FRAME, WIDTH, absent
@@ -47,6 +43,7 @@ from costeer.runtime.setup import (
 from costeer.runtime.shared import Shared
 from costeer.runtime.states import Fault, RunState
 from costeer.runtime.trace import Tracer
+from costeer.runtime.watchdog import stands_still
 
 NEVER = math.inf
 
@@ -83,15 +80,16 @@ class Driving:
         links: Links,
         shared: Shared,
         clock: Callable[[], float] = time.perf_counter,
-        opener: Callable[[WheelDescription, WheelCalibration], Wheel] = open_wheel,
+        opener: Opener = open_wheel,
     ) -> None:
         self._setup = setup
         self._links = links
         self._clock = clock
-        self._opener = opener
         self._mailbox, self._frames = shared.mailbox, shared.frames
         self._tracer = Tracer(shared.trace)
-        self._cabin = Cabin(setup)
+        self._cabin = Cabin(setup, self._is_released)
+        self._bay = Bay(setup, self._cabin, self._mailbox, clock, opener)
+        self._stepped_at = NEVER
         self._road = drive_parameters(setup).road
         self._draws = leader_draws(setup)
         self._frame = np.full(WIDTH, np.nan)
@@ -106,13 +104,6 @@ class Driving:
         self._last_event = 0.0
         links.wake.setblocking(False)
 
-    def _opened(self) -> Wheel | None:
-        """The wheel of the setup, open; None for virtual hands."""
-        wheel, calibration = self._setup.wheel, self._setup.calibration
-        if wheel is None or calibration is None:
-            return None
-        return self._opener(wheel, calibration)
-
     def warm_up(self) -> None:
         """Compile everything before the wheel is opened: some switch off when idle."""
         self._cabin.warm_up()
@@ -123,19 +114,11 @@ class Driving:
         Raises:
             OSError: If it is not there.
         """
-        self._cabin.change_wheel(self._opened())
+        self._bay.open()
 
     def close(self) -> None:
         """Take the torque off the wheel and let it go; watched until it is done."""
-        self._mailbox.put(heartbeat=self._clock())
-        self._let_go()
-        self._mailbox.put(armed=0.0)
-
-    def _let_go(self) -> None:
-        """Close the wheel, also one that does not answer."""
-        if self._cabin.wheel is not None:
-            with suppress(OSError):
-                self._cabin.wheel.close()
+        self._bay.close()
 
     @property
     def _time(self) -> float:
@@ -246,16 +229,15 @@ class Driving:
 
     def plant_step(self, late: float) -> None:
         """Wheel and car one plant step on."""
-        if self._mailbox.get("stalled") > 0.5:
-            self._break_off(Fault.STALLED)
-        moving = self._run_state == RunState.RUNNING
         start = self._clock()
+        self._look_back(start)
+        moving = self._run_state == RunState.RUNNING
         try:
             self._cabin.advance(moving, self._fault != Fault.NONE)
         except WheelLost:
-            self._lose_wheel()
+            self._bay.lose()
             self._break_off(Fault.WHEEL_LOST)
-        now = self._clock()
+        self._stepped_at = now = self._clock()
         self._mailbox.put(heartbeat=now)
         reading = self._cabin.reading
         if moving and reading is not None and now - reading.time > WHEEL_PATIENCE:
@@ -263,14 +245,19 @@ class Driving:
         if moving:
             self._tracer.put(self._frame[_TIME], late, now - start, self._cabin)
 
-    def _lose_wheel(self) -> None:
-        """Let go of a wheel that is gone; that may take longer than is watched."""
-        self._mailbox.put(armed=0.0)
-        self._let_go()
-        self._cabin.change_wheel(None)
-        self._mailbox.put(heartbeat=self._clock(), armed=1.0)
-
     # Safety
+
+    def _is_released(self) -> bool:
+        """Whether the watchdog has told the wheel to let go."""
+        return self._mailbox.get("stalled") > 0.5
+
+    def _look_back(self, now: float) -> None:
+        """Break off after having stood still, from the torque that is left: none."""
+        if self._is_released():
+            self._break_off(Fault.STALLED)
+        elif self._cabin.wheel is not None and now - self._stepped_at > EFFECT_LIFE:
+            self._cabin.release()
+            self._break_off(Fault.STALLED)
 
     def _look_around(self, now: float) -> None:
         """Stop what must not go on: no server, no page, no fresh reading."""
@@ -280,10 +267,16 @@ class Driving:
             self.stopping = True
         if self._run_state != RunState.RUNNING:
             return
+        if self._is_unwatched(now):
+            self._break_off(Fault.WATCHDOG_STILL)
         if self._setup.needs_page:
             silence = now - self._mailbox.get("page_time")
             if silence > PAGE_PATIENCE:
                 self._break_off(Fault.PAGE_LOST)
+
+    def _is_unwatched(self, now: float) -> bool:
+        """Whether there is a wheel that nobody would stop."""
+        return self._setup.wheel is not None and stands_still(self._mailbox, now)
 
     def _break_off(self, fault: Fault) -> None:
         """Pause for a fault; the torque ends at once, the record is kept."""
@@ -331,8 +324,11 @@ class Driving:
     def _begin(self, kind: Kind) -> None:
         """Run, if wheel and numbers allow it."""
         self._forget_stall()
-        if self._setup.wheel is not None and self._cabin.wheel is None:
-            self._find_wheel()
+        if self._bay.is_empty:
+            self._bay.find()
+            self._stepped_at = NEVER
+        if self._is_unwatched(self._clock()):
+            raise ValueError(Fault.WATCHDOG_STILL.text)
         if not self._fault.can_resume:
             raise ValueError(self._fault.text)
         self._cabin.check_wheel()
@@ -343,19 +339,11 @@ class Driving:
 
     def _forget_stall(self) -> None:
         """The watchdog has told the wheel to let go: it is to be opened anew, once."""
-        if self._fault == Fault.STALLED:
+        if self._fault == Fault.STALLED or self._is_released():
             self._mailbox.put(stalled=0.0)
-            self._lose_wheel()
+            self._bay.lose()
+            self._stepped_at = NEVER
             self._fault = Fault.WHEEL_LOST
-
-    def _find_wheel(self) -> None:
-        """Open the wheel again; it may take longer than the watchdog waits."""
-        self._mailbox.put(armed=0.0)
-        try:
-            self._cabin.change_wheel(self._opened())
-            self._cabin.advance(False, True)
-        finally:
-            self._mailbox.put(heartbeat=self._clock(), armed=1.0)
 
     def _do_leave(self) -> None:
         if self._run_state == RunState.RUNNING and self._setup.needs_page:

@@ -27,7 +27,8 @@ from costeer.runtime.shared import Shared, close_shared, open_shared
 
 def run_realtime(setup: DriveSetup, links: Links) -> None:
     """Drive until told to stop or left alone: the target of the spawned process."""
-    ignore(signal.SIGINT)  # the server says when to stop
+    ignore("SIGINT")  # the server says when to stop
+    ignore("SIGTSTP")  # Ctrl-Z halts the server; that is noticed here
     shared = open_shared(links.memory)
     drive: Driving | None = None
     try:
@@ -51,9 +52,10 @@ def run_realtime(setup: DriveSetup, links: Links) -> None:
         close_shared(shared, unlink=False)
 
 
-def ignore(number: signal.Signals) -> None:
-    """Let a signal pass."""
-    signal.signal(number, signal.SIG_IGN)
+def ignore(name: str) -> None:
+    """Let a signal pass, where the system has it."""
+    if number := getattr(signal, name, None):
+        signal.signal(number, signal.SIG_IGN)
 
 
 def end_at_signals(drive: Driving) -> None:

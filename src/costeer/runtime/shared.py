@@ -39,6 +39,7 @@ MAILBOX = (
     "heartbeat",
     "armed",
     "watching",
+    "watched_at",
     "reading",
     "stalled",
     "dismissed",
@@ -48,8 +49,8 @@ MAILBOX = (
 `page_time` is of the last word from a driver's page, `server_time` of the server's own
 life, `verdict_row` the number of the frame that the probability belongs to,
 `heartbeat` of the real-time process, `armed` 1 while the watchdog has to look,
-`watching` 1 once it does, `stalled` 1 once it had to act, `dismissed` 1 once it may go,
-and `reading` 1 once the network takes frames.
+`watching` 1 once it does, `watched_at` when it last did, `stalled` 1 once it had to
+act, `dismissed` 1 once it may go, and `reading` 1 once the network takes frames.
 """
 
 _PLACES = {name: place for place, name in enumerate(MAILBOX)}

@@ -81,6 +81,10 @@ class Fault(_Named):
         5,
         "The computer was too busy for a moment; costeer doctor says how to mend it.",
     )
+    WATCHDOG_STILL = (
+        7,
+        "The watchdog stood still, so that nobody watched the steering wheel.",
+    )
     LOOP_GONE = (
         6,
         "The real-time process has ended. Start costeer drive again.",
