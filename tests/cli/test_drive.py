@@ -14,6 +14,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+import typer
 
 from costeer.cli import drive as command
 from costeer.cli import main
@@ -169,3 +170,15 @@ def drive_a_while(address: str) -> None:
                 return
             if frame[PLACE["run_state"]] == RunState.PAUSED and sequence % 60 == 0:
                 page.send('{"type":"resume"}')
+
+
+def test_what_could_not_be_kept_is_told_and_makes_the_command_fail(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    session = DriveOnPages(drive_setup(), None, PageOptions())
+    session.drive._keeper.unkept.append("no space; what was driven is in me.arrow")
+    with pytest.raises(typer.Exit) as end:
+        command.tell_end(session)
+    session.stop()
+    assert end.value.exit_code == 1
+    assert "me.arrow" in capsys.readouterr().err

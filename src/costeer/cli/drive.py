@@ -206,8 +206,16 @@ def run_drive(session: DriveOnPages, access: Access, browser: bool) -> None:
 
 
 def tell_end(session: DriveOnPages) -> None:
-    """Print what is left of the drive."""
+    """Print what is left of the drive.
+
+    Raises:
+        typer.Exit: With 1 if something that was driven could not be kept.
+    """
     for line in session.account():
         note(f"costeer: {line}")
     for path in session.drive.kept:
         typer.echo(path)
+    for line in session.drive.unkept:
+        note(f"costeer: {line}")
+    if session.drive.unkept:
+        raise typer.Exit(1)

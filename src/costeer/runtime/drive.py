@@ -97,7 +97,7 @@ class Drive:
         check_drive(setup)
         self.setup = setup
         self._listener = listener
-        self._keeper = Keeper(setup, record, self._tell_error)
+        self._keeper = Keeper(setup, record, self._tell_error, self._halt)
         self._context = multiprocessing.get_context("spawn")
         self.shared = make_shared()
         self._commands, self._far_commands = self._context.Pipe()
@@ -226,6 +226,11 @@ class Drive:
         """Records that are whole."""
         return self._keeper.kept
 
+    @property
+    def unkept(self) -> list[str]:
+        """What could not be kept, and the way to save what is left of it."""
+        return self._keeper.unkept
+
     # What comes in
 
     def send(self, *command: object) -> None:
@@ -292,6 +297,7 @@ class Drive:
                         self._mark(*values)
             except (EOFError, OSError):
                 break
+            self._keeper.retry(self.shared)
             self._look_after_helpers()
         if not self._stopping.is_set():
             self._tell_stalled()
@@ -303,6 +309,13 @@ class Drive:
 
     def _tell_error(self, text: str) -> None:
         self._listener.marker(Marker("error", note=text))
+
+    def _halt(self, reason: str) -> None:
+        """Let nobody drive unrecorded: pause for a reason, "" once that is over."""
+        if reason:
+            self._tell_error(reason)
+        with suppress(ValueError):  # there is no loop that would drive
+            self.send("unrecorded", bool(reason))
 
     def _look_after_helpers(self) -> None:
         """Say once that a helper is gone; without a watchdog nobody drives on."""

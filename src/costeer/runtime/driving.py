@@ -101,7 +101,7 @@ class Driving:
         self._run_state, self._fault = RunState.WAITING, Fault.NONE
         self._compute_time = self._applied = 0.0
         self._leaders = 0
-        self._last_event = 0.0
+        self._last_event = self._paused_at = 0.0
         links.wake.setblocking(False)
 
     def warm_up(self) -> None:
@@ -244,6 +244,8 @@ class Driving:
             self._break_off(Fault.SENSOR_STALE)
         if moving:
             self._tracer.put(self._frame[_TIME], late, now - start, self._cabin)
+        else:
+            self._tracer.follow(late, now - start, self._cabin)
 
     # Safety
 
@@ -274,6 +276,9 @@ class Driving:
             if silence > PAGE_PATIENCE:
                 self._break_off(Fault.PAGE_LOST)
 
+    def _pause(self) -> None:
+        self._run_state, self._paused_at = RunState.PAUSED, self._clock()
+
     def _is_unwatched(self, now: float) -> bool:
         """Whether there is a wheel that nobody would stop."""
         return self._setup.wheel is not None and stands_still(self._mailbox, now)
@@ -284,7 +289,7 @@ class Driving:
             return
         self._fault = fault
         if self._run_state == RunState.RUNNING:
-            self._run_state = RunState.PAUSED
+            self._pause()
         self._mark(Marker("fault", fault.word))
 
     # Commands
@@ -335,7 +340,11 @@ class Driving:
         self._fault = Fault.NONE
         self._cabin.meet_wheel()
         self._run_state = RunState.RUNNING
-        self._mark(Marker(kind))
+        if kind == "started":
+            self._mark(Marker(kind))
+            return
+        stood = round(self._clock() - self._paused_at, 3)
+        self._mark(Marker(kind, after=stood, unit="s"))
 
     def _forget_stall(self) -> None:
         """The watchdog has told the wheel to let go: it is to be opened anew, once."""
@@ -351,17 +360,27 @@ class Driving:
 
     def _do_pause(self, why: str) -> None:
         if self._run_state == RunState.RUNNING:
-            self._run_state = RunState.PAUSED
+            self._pause()
             self._mark(Marker("paused", why))
 
     def _do_restart(self) -> None:
         self._forget_stall()
-        self._fault = Fault.NONE  # a wheel that is lost is looked for at the start
+        if self._fault != Fault.RECORD_STOPPED:
+            self._fault = Fault.NONE  # a lost wheel is looked for at the start
+        self._tracer.leave()
         self._cabin.begin()
         self._leaders, self._last_event = 0, 0.0
         self._indicator.forget()
         self._run_state = RunState.WAITING
         self._mark(Marker("restarted"))
+
+    def _do_unrecorded(self, is_so: bool) -> None:
+        """Wait while nothing can be recorded; say so once it can."""
+        if is_so:
+            self._break_off(Fault.RECORD_STOPPED)
+        elif self._fault == Fault.RECORD_STOPPED:
+            paused = self._run_state == RunState.PAUSED
+            self._fault = Fault.RECORD_MENDED if paused else Fault.NONE
 
     def _do_indicator(self, side: float) -> None:
         self._indicator.put(float(side), self._time)

@@ -85,6 +85,13 @@ class Fault(_Named):
         7,
         "The watchdog stood still, so that nobody watched the steering wheel.",
     )
+    RECORD_STOPPED = (
+        8,
+        "The record cannot be written, so the trial waits. Make room on the disk; "
+        "costeer goes on trying.",
+        False,
+    )
+    RECORD_MENDED = 9, "The record can be written again."
     LOOP_GONE = (
         6,
         "The real-time process has ended. Start costeer drive again.",
