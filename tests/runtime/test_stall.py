@@ -15,7 +15,7 @@ from costeer.runtime.drive import Drive, Listener
 from costeer.runtime.frame import PLACE
 from costeer.runtime.patience import WATCHDOG_PATIENCE
 from costeer.runtime.setup import DriveSetup
-from costeer.runtime.states import Fault, RunState
+from costeer.runtime.states import Fault, Loss, RunState
 from costeer.runtime.watchdog import stands_still
 from tests.runtime.rig import Rig, of, wheel_setup
 from tests.waiting import wait_for
@@ -109,7 +109,7 @@ def drives() -> Iterator[list[Drive]]:
     made: list[Drive] = []
     yield made
     for drive in made:
-        for process in (drive._realtime, *drive._helpers.values()):
+        for process in (drive._realtime, *drive._helpers.processes.values()):
             if process is not None and process.is_alive():
                 os.kill(int(process.pid or 0), signal.SIGCONT)
         drive.stop()
@@ -141,7 +141,7 @@ def test_halted_process_does_not_push_when_it_goes_on(
         return abs(cell[0]) > 0.3
 
     wait_for(pushes)
-    watchdog = int(drive._helpers["watchdog"].pid or 0)
+    watchdog = int(drive._helpers.processes[Loss.WATCHDOG].pid or 0)
     if watchdog_too:
         os.kill(watchdog, signal.SIGSTOP)
     os.kill(drive.pid, signal.SIGSTOP)

@@ -313,6 +313,8 @@ class Driving:
         self._links.commands.send(("marker", marker._replace(time=self._time)))
 
     def _do_stop(self) -> None:
+        if self._stop_at < NEVER:
+            return  # it was told before
         if self._run_state in (RunState.RUNNING, RunState.PAUSED):
             self._mark(Marker("ended", "server"))
         self._run_state = RunState.ENDED
@@ -365,7 +367,7 @@ class Driving:
 
     def _do_restart(self) -> None:
         self._forget_stall()
-        if self._fault != Fault.RECORD_STOPPED:
+        if self._fault not in (Fault.RECORD_STOPPED, Fault.UNWATCHED):
             self._fault = Fault.NONE  # a lost wheel is looked for at the start
         self._tracer.leave()
         self._cabin.begin()
@@ -373,6 +375,9 @@ class Driving:
         self._indicator.forget()
         self._run_state = RunState.WAITING
         self._mark(Marker("restarted"))
+
+    def _do_unwatched(self) -> None:
+        self._break_off(Fault.UNWATCHED)
 
     def _do_unrecorded(self, is_so: bool) -> None:
         """Wait while nothing can be recorded; say so once it can."""

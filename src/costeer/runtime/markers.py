@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import Literal, NamedTuple
 
-from costeer.runtime.states import Fault
+from costeer.runtime.states import Fault, Loss
 
 Kind = Literal[
     "started",
@@ -87,6 +87,9 @@ def _said(marker: Marker) -> str:
         return f"{before}{_shown(marker.after)}{unit}"
     if marker.kind == "fault":
         texts = {fault.word: fault.text for fault in Fault}
+        return texts.get(marker.name, marker.name)
+    if marker.kind == "lost":
+        texts = {loss.word: loss.text for loss in Loss}
         return texts.get(marker.name, marker.name)
     return _REASONS.get(marker.name, marker.name)
 

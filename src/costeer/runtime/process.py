@@ -23,6 +23,7 @@ from costeer.runtime.driving import Driving
 from costeer.runtime.links import Links
 from costeer.runtime.setup import PLANT_DT, PLANT_STEPS, DriveSetup
 from costeer.runtime.shared import Shared, close_shared, open_shared
+from costeer.runtime.watchdog import ignore
 
 
 def run_realtime(setup: DriveSetup, links: Links) -> None:
@@ -50,12 +51,6 @@ def run_realtime(setup: DriveSetup, links: Links) -> None:
             drive.close()
         links.commands.close()
         close_shared(shared, unlink=False)
-
-
-def ignore(name: str) -> None:
-    """Let a signal pass, where the system has it."""
-    if number := getattr(signal, name, None):
-        signal.signal(number, signal.SIG_IGN)
 
 
 def end_at_signals(drive: Driving) -> None:

@@ -123,8 +123,13 @@ class Watch:
 def stay_until_needed_no_more() -> None:
     """Outlive whatever ends or halts the others: Ctrl-C and Ctrl-Z, a closed window."""
     for name in ("SIGINT", "SIGHUP", "SIGQUIT", "SIGBREAK", "SIGTERM", "SIGTSTP"):
-        if number := getattr(signal, name, None):
-            signal.signal(number, signal.SIG_IGN)
+        ignore(name)
+
+
+def ignore(name: str) -> None:
+    """Let a signal pass, where the system has it."""
+    if number := getattr(signal, name, None):
+        signal.signal(number, signal.SIG_IGN)
 
 
 def orphaned(mailbox: Mailbox, now: float) -> bool:
