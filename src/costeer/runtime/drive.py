@@ -83,7 +83,7 @@ class Drive:
         self._threads: list[threading.Thread] = []
         self._closing = threading.Event()
         self._stopping = threading.Event()
-        self.is_ending = False
+        self.is_ending = self._is_told_to_stop = False
         self._out_of_order = ""
         self._watch: Watch | None = None
         self.priority = ""
@@ -150,8 +150,8 @@ class Drive:
         """Ask the wheel's loop to end, and end it if it does not."""
         if self._realtime is None:
             return
-        with suppress(OSError):
-            self._commands.send(("stop",))
+        with suppress(ValueError):  # it is gone
+            self.end_trial()
         self._realtime.join(STOP_PATIENCE)
         if self._realtime.is_alive():
             self._realtime.kill()
@@ -190,10 +190,24 @@ class Drive:
         """
         if self._out_of_order:
             raise ValueError(self._out_of_order)
+        self._put(*command)
+
+    def _put(self, *command: object) -> None:
         try:
             self._commands.send(command)
         except OSError as error:
             raise ValueError(Fault.LOOP_GONE.text) from error
+
+    def end_trial(self) -> None:
+        """Ask the loop to end the trial and itself, once.
+
+        Raises:
+            ValueError: As `send`.
+        """
+        if not self._is_told_to_stop:
+            self._is_told_to_stop = True
+            self.is_ending = True
+            self._put("stop")
 
     def press(
         self, sequence: int, steer: float, accelerator: float, brake: float
@@ -238,12 +252,17 @@ class Drive:
 
     def _hear(self) -> None:
         """Pass on what the real-time process says; notice who is gone."""
-        while not self._closing.is_set():
+        while True:
             try:
-                if self._commands.poll(_LISTEN_INTERVAL):
+                is_more = self._commands.poll(_LISTEN_INTERVAL)
+                if self._closing.is_set() and not is_more:
+                    break  # the last word has been heard
+                if is_more:
                     word, *values = self._commands.recv()
                     if word == "marker":
                         self._mark(*values)
+            except ConnectionResetError:
+                continue  # its other end has closed unread; what it said is still there
             except (EOFError, OSError):
                 break
             self._keeper.retry(self.shared)

@@ -115,7 +115,7 @@ class DriveOnPages:
     def say_goodbye(self) -> None:
         """End the trial while its pages are still there, and tell them so."""
         with suppress(ValueError):  # the loop has ended
-            self.drive.send("stop")
+            self.drive.end_trial()
         self.broadcast.send({"type": "farewell"})
 
     def stop(self) -> None:

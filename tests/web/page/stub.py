@@ -58,6 +58,7 @@ class Stub:
         self.mode = "drive"
         self.tables: Json = dict(page_tables())
         self.is_halted = False
+        self.is_loop_gone = False
         self.refuses = ""
         self._to_say: list[Json] = []
 
@@ -123,7 +124,7 @@ class Stub:
 async def send_frames(stub: Stub, link: WebSocket) -> None:
     """Send frames at their rate; time passes only while the trial runs."""
     while True:
-        while stub.is_halted:
+        while stub.is_halted or stub.is_loop_gone:
             await asyncio.sleep(1.0 / RATE)
         for message in stub.said():
             await link.send_text(json.dumps(message))

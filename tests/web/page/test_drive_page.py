@@ -162,8 +162,9 @@ def test_a_key_does_nothing_where_nothing_can_go_on(driven: Driven) -> None:
     until(driven.page, f"costeer.lastFrame.fault === {FLAT_TYRE['code']}")
     before = len(driven.stub.of_type("resume"))
     driven.press("Enter")
-    driven.press("ArrowLeft")
-    driven.hear_steer(1.0)
+    driven.page.keyboard.down("ArrowLeft")
+    driven.hear_steer(1.0)  # what was pressed before has been sent as well
+    driven.page.keyboard.up("ArrowLeft")
     assert len(driven.stub.of_type("resume")) == before
     driven.stub.frame["fault"] = 0.0
 
@@ -239,7 +240,7 @@ def test_a_page_that_comes_late_is_told_how_it_stands(browser: Browser) -> None:
     stub = Stub()
     gone = next(each for each in stub.tables["faults"] if each["name"] == "loop_gone")
     stub.tables |= {"run_state": 2, "fault": gone["code"], "losses": ["No network."]}
-    stub.is_halted = True  # the real-time process is gone: no frame comes any more
+    stub.is_loop_gone = True  # no frame comes any more
     with served(stub) as address:
         page = browser.new_page(viewport={"width": 480, "height": 270})
         page.goto(f"{address}/?low&clean")
