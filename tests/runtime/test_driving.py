@@ -197,3 +197,13 @@ def test_verdict_counts_only_while_it_is_fresh(rig: MakeRig) -> None:
     probability = of(frames, "crossing_probability")
     assert (probability[:6] == 0.9).all()
     assert np.isnan(probability[8:]).all()
+
+
+def test_signal_to_end_ends_the_trial_with_a_marker_once(rig: MakeRig) -> None:
+    drive = rig(drive_setup())
+    drive.ask("start")
+    drive.steps(5)
+    drive.driving.is_told_to_end = True  # by its handler, a plain flag
+    drive.steps(2)
+    assert drive.driving.stopping
+    assert drive.kinds() == ["started", "ended"]

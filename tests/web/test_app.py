@@ -6,7 +6,6 @@ import asyncio
 import json
 import socket as sockets
 import struct
-import time
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -15,7 +14,7 @@ import pytest
 from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import ClientConnection
 
-from costeer.web import impatient, intake, serving
+from costeer.web import intake, serving
 from costeer.web.app import MOST_PAGES, drive_app
 from costeer.web.messages import Input, Set, Start
 from costeer.web.pages import file_in, start_page, static_folder
@@ -293,48 +292,6 @@ def test_a_slow_page_loses_old_frames_but_no_text() -> None:
     *texts, frames = asyncio.run(late())
     assert texts == [str(number) for number in range(MOST_FRAMES + 5)]
     assert frames == bytes(range(5, MOST_FRAMES + 5))
-
-
-def raw(running: Running, text: bytes) -> sockets.socket:
-    """A plain connection on which something was sent."""
-    made = sockets.create_connection(("127.0.0.1", running.access.port), PATIENCE)
-    made.sendall(text)
-    return made
-
-
-@pytest.mark.parametrize("chunk", [b"zz\r\nabc\r\n0\r\n\r\n", b"-5\r\nabc\r\n"])
-def test_a_bad_chunk_is_refused_without_a_word_in_the_log(
-    running: Running, chunk: bytes, caplog: pytest.LogCaptureFixture
-) -> None:
-    asked = b"GET / HTTP/1.1\r\nHost: 127.0.0.1\r\nTransfer-Encoding: chunked\r\n\r\n"
-    with raw(running, asked + chunk) as connection:
-        assert connection.recv(100).startswith(b"HTTP/1.1 400")
-    assert fetch(running, "/").status == 200
-    assert not [record for record in caplog.records if record.exc_info]
-
-
-@pytest.mark.parametrize("half", [b"", b"GET / HTTP/1.1\r\nHost: 127"])
-def test_half_a_request_does_not_keep_a_connection_open(
-    running: Running, monkeypatch: pytest.MonkeyPatch, half: bytes
-) -> None:
-    monkeypatch.setattr(impatient, "PATIENCE", 0.1)
-    with raw(running, half) as connection:
-        assert connection.recv(100) == b""
-    whole = b"GET / HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n"
-    with raw(running, whole + b"GET / HT") as connection:
-        while connection.recv(1000):
-            pass
-
-
-def test_a_socket_outlives_the_patience_for_requests(
-    running: Running, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(impatient, "PATIENCE", 0.05)
-    with socket_of(running) as socket:
-        told(socket)
-        time.sleep(0.3)
-        socket.send('{"type":"ping","t":1}')
-        assert told(socket)["type"] == "pong"
 
 
 def test_pages_are_told_before_their_server_ends(static: Path) -> None:

@@ -96,7 +96,7 @@ class Driving:
         self._own = np.array([absent(c) for c in drive_columns(setup)])
         self._choices = Choices(self._cabin, setup, self._mark)
         self._indicator = Indicator(self._mark)
-        self.stopping = False
+        self.stopping = self.is_told_to_end = False
         self._stop_at = NEVER
         self._run_state, self._fault = RunState.WAITING, Fault.NONE
         self._compute_time = self._applied = 0.0
@@ -295,7 +295,9 @@ class Driving:
     # Commands
 
     def _hear(self) -> None:
-        """Do what the server has asked for since the last control step."""
+        """Do what a signal or the server has asked for since the last step."""
+        if self.is_told_to_end:
+            self._do_stop()
         while self._links.commands.poll():
             try:
                 word, *values = self._links.commands.recv()

@@ -54,10 +54,10 @@ def run_realtime(setup: DriveSetup, links: Links) -> None:
 
 
 def end_at_signals(drive: Driving) -> None:
-    """End with the torque off when the system or a closed terminal says so."""
+    """Fade out and end when the system or a closed terminal says so."""
 
     def end(*_: object) -> None:
-        drive.stopping = True
+        drive.is_told_to_end = True
 
     for name in ("SIGTERM", "SIGHUP", "SIGQUIT", "SIGBREAK"):
         if number := getattr(signal, name, None):

@@ -9,6 +9,8 @@ being written is not taken for a whole one.
 from __future__ import annotations
 
 import os
+import signal
+import threading
 from contextlib import suppress
 from multiprocessing.shared_memory import SharedMemory
 from typing import NamedTuple
@@ -157,6 +159,7 @@ def make_shared() -> Shared:
     Raises:
         ValueError: If the system has no room for it.
     """
+    _start_tracker()
     try:
         memory = SharedMemory(create=True, size=8 * _TOTAL)
     except OSError as error:
@@ -171,6 +174,23 @@ def make_shared() -> Shared:
     np.ndarray(_TOTAL, np.float64, memory.buf)[:] = 0.0
     shared.mailbox.put(head_yaw=0.0, crossing_probability=np.nan, verdict_row=-1.0)
     return shared
+
+
+def _start_tracker() -> None:
+    """Start what looks after shared memory so that a closed terminal leaves it alone.
+
+    It ignores Ctrl-C by itself, but would die of SIGHUP before those that it serves.
+    """
+    from multiprocessing import resource_tracker
+
+    number = getattr(signal, "SIGHUP", None)
+    if number is None or threading.current_thread() is not threading.main_thread():
+        return
+    before = signal.signal(number, signal.SIG_IGN)
+    try:
+        resource_tracker.ensure_running()
+    finally:
+        signal.signal(number, before)
 
 
 def _allocate(memory: SharedMemory) -> None:
