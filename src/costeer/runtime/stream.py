@@ -210,7 +210,8 @@ class RecordStream:
         """What could not be written, in words; "" if there is nothing."""
         if self._file.is_whole:
             return ""
-        return f"it lacks {self._given_until - self.kept_until:.1f} s at its end"
+        lacking = self._given_until - self.kept_until
+        return f"it lacks {lacking:.1f} s at its end" if lacking else "it lacks markers"
 
     def _batch(
         self, rows: NDArray[np.float64], assisted: NDArray[np.bool_]
