@@ -244,6 +244,7 @@ def test_trace_goes_on_until_the_torque_is_zero(kept: Kept) -> None:
     kept.ask("start")
     kept.steps(30)
     kept.keeper.close()
+    assert kept.keeper.unkept == []
     first, then = sorted(kept.keeper.kept, key=lambda path: len(path.name))
     table = pq.read_table(record_paths(first).trace)
     time, torque = (table.column(name).to_numpy() for name in ("time", "wheel_torque"))

@@ -78,7 +78,7 @@ class Keeper:
         self._chosen = followed(self._chosen, marker)
         if marker.kind == "restarted":
             self._first = (shared.frames.written, shared.trace.written)
-            self.finish()
+            self.finish(waits=False)
         if marker.kind == "started" and self._recorder is None and self._record:
             self._early = []
             self.retry(shared)
@@ -127,7 +127,7 @@ class Keeper:
         paths = record_paths(next_free(record))
         return RecordStream(paths, described, drive_columns(self._setup))
 
-    def finish(self) -> None:
+    def finish(self, waits: bool = True) -> None:
         """Make the record of a trial that is over whole, in a thread of its own."""
         if self._early is not None:
             self._early = None
@@ -138,14 +138,14 @@ class Keeper:
         recorder, self._recorder = self._recorder, None
         if recorder is None:
             return
-        thread = threading.Thread(target=self._finish, args=(recorder,))
+        thread = threading.Thread(target=self._finish, args=(recorder, waits))
         thread.start()
         self._finishing.append(thread)
 
-    def _finish(self, recorder: Recorder) -> None:
+    def _finish(self, recorder: Recorder, waits: bool) -> None:
         paths = recorder.stream.paths
         try:
-            recorder.stop()
+            recorder.stop(waits)
             if finish(paths, recorder.stream.num_rows):
                 self.kept.append(paths.record)
         except (OSError, ValueError) as error:

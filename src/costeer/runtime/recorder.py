@@ -98,6 +98,7 @@ class Recorder:
         self._markers: list[Marker] = []
         self._next_frame, self._next_trace = first
         self._last_time = self._last_traced = -1.0
+        self._waits = True
         self._stop = threading.Event()
         self._lock = threading.Lock()
         self._thread = threading.Thread(target=self._run, daemon=True)
@@ -111,12 +112,16 @@ class Recorder:
         with self._lock:
             self._markers.append(marker)
 
-    def stop(self) -> None:
+    def stop(self, waits: bool = True) -> None:
         """Keep what is left, then close the streams.
+
+        Args:
+            waits: Whether for the torque to fade out; not if the next trial begins.
 
         Raises:
             OSError: If the rest cannot be written.
         """
+        self._waits = waits
         self._stop.set()
         if self._thread.is_alive():
             self._thread.join()
@@ -127,7 +132,8 @@ class Recorder:
     def _run(self) -> None:
         while not self._stop.wait(INTERVAL):
             self._try()
-        self._await_rest()
+        if self._waits:
+            self._await_rest()
         self._try()
 
     def _await_rest(self) -> None:
