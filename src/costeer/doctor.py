@@ -65,7 +65,14 @@ def examine(folder: Path) -> list[Finding]:
         check_figures,
         check_timer,
     ]
-    checks += [check_priority, check_wheels, check_camera, check_port, check_page]
+    checks += [
+        check_shared_memory,
+        check_priority,
+        check_wheels,
+        check_camera,
+        check_port,
+        check_page,
+    ]
     return [check() for check in checks] + [check_extra(name) for name in _EXTRAS]
 
 
@@ -109,6 +116,22 @@ def check_disk(folder: Path) -> Finding:
     if free >= STUDY_DISK:
         return Finding("Disk", "ok", detail)
     return Finding("Disk", "missing", detail, "free 1 GB or choose another --out")
+
+
+def check_shared_memory(folder: Path = Path("/dev/shm")) -> Finding:
+    """There is room for what the processes of a drive share."""
+    from costeer.runtime.shared import NEEDED
+
+    if not folder.is_dir():
+        return Finding("Shared memory", "ok", "this system sets no limit")
+    free = shutil.disk_usage(folder).free
+    detail = f"{free / 1e6:.1f} MB free at {folder}; a drive takes {NEEDED / 1e6:.1f}"
+    if free >= 2 * NEEDED:
+        return Finding("Shared memory", "ok", detail)
+    remedy = (
+        f"end programs that use {folder}, or make it larger (in Docker: --shm-size)"
+    )
+    return Finding("Shared memory", "optional", detail, remedy)
 
 
 def check_packages() -> Finding:

@@ -180,3 +180,14 @@ def test_wheel_that_is_not_calibrated_is_told(
     finding = doctor.check_wheels()
     assert "Old wheel is not calibrated" in finding.detail
     assert finding.remedy == "run: costeer wheel calibrate"
+
+
+@pytest.mark.parametrize(("free", "status"), [(1e5, "optional"), (1e9, "ok")])
+def test_shared_memory_is_enough_for_a_drive_or_told(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, free: float, status: str
+) -> None:
+    monkeypatch.setattr(shutil, "disk_usage", lambda _: Usage(int(1e9), 0, int(free)))
+    found = doctor.check_shared_memory(tmp_path)
+    assert found.status == status
+    assert ("--shm-size" in found.remedy) == (status == "optional")
+    assert doctor.check_shared_memory(tmp_path / "none").status == "ok"

@@ -14,9 +14,11 @@ from typing import Any
 
 import numpy as np
 import pytest
+import typer
 
 from costeer.cli import drive as command
 from costeer.cli import main
+from costeer.export.markers import markers_of
 from costeer.records.record import read_record
 from costeer.runtime.frame import FRAME_COLUMNS, PLACE
 from costeer.runtime.markers import Marker
@@ -143,7 +145,32 @@ def test_stopped_command_leaves_a_whole_record_and_no_process(
     assert "Traceback" not in err
     assert "leaked" not in err
     assert out.endswith(f"{record}\n")
-    assert read_record(record).columns["time"][-1] > 0.5
+    kept = read_record(record)
+    assert kept.columns["time"][-1] > 0.5
+    ends = [marker[:2] for marker in markers_of(kept.metadata)][-1]
+    assert ends == ("ended", "server")  # no fault of a page that closed with its server
+
+
+@pytest.mark.slow
+@pytest.mark.usefixtures("compiled_drive")
+@pytest.mark.skipif(os.name != "posix", reason="there is no such signal")
+@pytest.mark.parametrize("after", [0.5, 2.0, 4.0])
+def test_stop_while_it_starts_is_told_in_one_line(after: float) -> None:
+    words = ["drive", "--wheel", "keyboard", "--no-browser", "--port", "0"]
+    with subprocess.Popen(
+        [sys.executable, "-m", "costeer", *words],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        start_new_session=True,
+    ) as process:
+        assert process.stderr is not None
+        process.stderr.readline()  # "starting"
+        time.sleep(after)
+        os.killpg(process.pid, signal.SIGINT)  # as a terminal does
+        _, told = process.communicate(timeout=PATIENCE)
+    lines = [line for line in told.splitlines() if "real-time process" not in line]
+    assert lines in (["costeer: stopped"], [])  # none if it had started by then
 
 
 def drive_a_while(address: str) -> None:
@@ -169,3 +196,15 @@ def drive_a_while(address: str) -> None:
                 return
             if frame[PLACE["run_state"]] == RunState.PAUSED and sequence % 60 == 0:
                 page.send('{"type":"resume"}')
+
+
+def test_what_could_not_be_kept_is_told_and_makes_the_command_fail(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    session = DriveOnPages(drive_setup(), None, PageOptions())
+    session.drive._keeper.unkept.append("no space; what was driven is in me.arrow")
+    with pytest.raises(typer.Exit) as end:
+        command.tell_end(session)
+    session.stop()
+    assert end.value.exit_code == 1
+    assert "me.arrow" in capsys.readouterr().err

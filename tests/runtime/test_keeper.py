@@ -23,7 +23,7 @@ class Kept:
     def __init__(self, setup: DriveSetup, record: Path) -> None:
         self.rig = Rig(setup)
         self.told: list[str] = []
-        self.keeper = Keeper(setup, record, self.told.append)
+        self.keeper = Keeper(setup, record, self.told.append, self.told.append)
 
     def ask(self, *command: object) -> None:
         """Ask the drive for something and pass on what it says of it."""
@@ -183,7 +183,7 @@ def test_drive_that_never_starts_leaves_no_file(
     assert list((tmp_path / "out").iterdir()) == []
 
 
-def test_record_that_cannot_be_begun_is_told_and_the_drive_goes_on(
+def test_record_that_cannot_be_begun_is_told_once(
     drive: Callable[[DriveSetup], Kept], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def full(*_: object) -> None:

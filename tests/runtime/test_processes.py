@@ -9,21 +9,22 @@ import sys
 import time
 from collections.abc import Callable, Iterator
 from contextlib import suppress
-from multiprocessing.shared_memory import SharedMemory
 from pathlib import Path
 
 import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from costeer.devices.head.calibration import HeadCalibration
+from costeer.devices.head.source import HeadDescription
 from costeer.devices.wheels.simulated import SpringHands, simulated_description
 from costeer.export.markers import markers_of
 from costeer.records.record import read_record, read_stream
 from costeer.runtime.drive import Drive, Listener
 from costeer.runtime.frame import PLACE
-from costeer.runtime.markers import Marker
+from costeer.runtime.markers import Marker, told
 from costeer.runtime.setup import DriveSetup
-from costeer.runtime.states import Fault, RunState
+from costeer.runtime.states import Fault, Loss, RunState
 from tests.runtime.rig import drive_setup, wheel_setup
 from tests.waiting import PATIENCE, wait_for
 
@@ -141,16 +142,6 @@ def test_drive_keeps_to_the_clock_with_verdicts_and_leaves_its_record(
     assert [kept.kinds()[0], kept.kinds()[-1]] == ["started", "ended"]
 
 
-@pytest.fixture
-def torque_cell() -> Iterator[tuple[str, NDArray[np.float64]]]:
-    memory = SharedMemory(create=True, size=8)
-    cell: NDArray[np.float64] = np.ndarray(1, np.float64, memory.buf)
-    cell[0] = 0.0
-    yield memory.name, cell
-    del cell
-    memory.unlink()
-
-
 @pytest.mark.slow
 @needs_posix
 @pytest.mark.parametrize("how", ["SIGKILL", "SIGSTOP", "SIGHUP"])
@@ -185,11 +176,54 @@ def test_nobody_drives_on_when_the_watchdog_is_gone(begin: Begin) -> None:
     drive, kept = begin(drive_setup(), None)
     drive.send("start")
     wait_for(lambda: "started" in kept.kinds())
-    os.kill(int(drive._helpers["watchdog"].pid or 0), signal.SIGKILL)
-    wait_for(lambda: "error" in kept.kinds())
-    wait_for(lambda: "paused" in kept.kinds())
-    with pytest.raises(ValueError, match="nobody watches the wheel"):
+    os.kill(int(drive._helpers.processes[Loss.WATCHDOG].pid or 0), signal.SIGKILL)
+    wait_for(lambda: {"lost", "fault"} <= set(kept.kinds()))
+    wait_for(lambda: kept.column("fault")[-1] == Fault.UNWATCHED)
+    assert kept.column("run_state")[-1] == RunState.PAUSED
+    assert drive.losses == [Loss.WATCHDOG]
+    with pytest.raises(ValueError, match="nobody watches the steering wheel"):
         drive.send("resume")
+
+
+@needs_posix
+def test_lost_network_is_told_as_long_as_it_lasts_and_marked_in_the_record(
+    begin: Begin, tmp_path: Path
+) -> None:
+    setup = drive_setup()._replace(intention="network")
+    drive, kept = begin(setup, tmp_path / "trial.parquet")
+    drive.send("start")
+    wait_for(lambda: kept.frames and kept.column("time")[-1] > 0.3)
+    assert drive.losses == []
+    os.kill(int(drive._helpers.processes[Loss.NETWORK].pid or 0), signal.SIGKILL)
+    wait_for(lambda: drive.losses == [Loss.NETWORK])
+    drive.stop()
+    markers = markers_of(read_record(drive.kept[0]).metadata)
+    (lost,) = [marker for marker in markers if marker.kind == "lost"]
+    assert lost.name == "network"
+    assert lost.time > 0.2
+    assert "no lane change is read" in told(lost)
+
+
+@needs_posix
+@pytest.mark.parametrize("how", ["SIGTERM", "SIGHUP"])
+def test_drive_ends_although_its_helpers_were_ended_first(
+    begin: Begin, how: str
+) -> None:
+    # As when a terminal is closed: all processes get the signal at once. An event of
+    # multiprocessing would wait for ever for the one that died waiting for it.
+    head = HeadCalibration("1", HeadDescription("webcam", "no such file.mp4"))
+    drive, kept = begin(drive_setup()._replace(head=head), None)
+    assert drive.losses == [Loss.CAMERA]
+    assert [marker[:2] for marker in kept.markers] == [("lost", "camera")]
+    drive.is_ending = True
+    tracker = drive._helpers.processes[Loss.HEAD]
+    os.kill(int(tracker.pid or 0), getattr(signal, how))
+    os.kill(drive.pid, getattr(signal, how))
+    began = time.monotonic()
+    drive.stop()
+    assert time.monotonic() - began < PATIENCE
+    assert not tracker.is_alive()
+    assert "fault" not in kept.kinds()
 
 
 @pytest.mark.slow

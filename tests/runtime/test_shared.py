@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import errno
 import multiprocessing
+import os
 from collections.abc import Iterator
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -11,6 +14,7 @@ import pytest
 from costeer.runtime.frame import TRACE_COLUMNS, WIDTH
 from costeer.runtime.shared import (
     FRAME_ROWS,
+    NEEDED,
     Ring,
     Shared,
     close_shared,
@@ -90,3 +94,20 @@ def test_mailbox_starts_without_a_verdict(shared: Shared) -> None:
     assert shared.mailbox.get("input_sequence") == 0.0
     assert shared.frames.since(0)[0] == 0
     assert shared.frames.size == FRAME_ROWS
+
+
+@pytest.mark.skipif(not hasattr(os, "posix_fallocate"), reason="nothing to allocate by")
+def test_shared_memory_without_room_is_told_and_given_back(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    names = []
+
+    def full(descriptor: int, first: int, size: int) -> None:
+        names.append(Path(f"/proc/self/fd/{descriptor}").resolve())
+        assert (first, size) == (0, NEEDED)
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr(os, "posix_fallocate", full)
+    with pytest.raises(ValueError, match=r"shared memory lacks room for the .* MB"):
+        make_shared()
+    assert not names[0].exists()

@@ -14,7 +14,7 @@ from websockets.sync.client import ClientConnection, connect
 
 from costeer.web.messages import Message
 from costeer.web.security import Access, access_for
-from costeer.web.serving import Running, serve
+from costeer.web.serving import Ending, Running, serve
 from costeer.web.session import Broadcast, Role
 from tests.waiting import PATIENCE
 
@@ -73,7 +73,9 @@ def page_files(folder: Path) -> Path:
 
 @contextmanager
 def served(
-    make_app: Callable[[Access], ASGIApp], access: Access | None = None
+    make_app: Callable[[Access], ASGIApp],
+    access: Access | None = None,
+    ending: Ending | None = None,
 ) -> Iterator[Running]:
     """The application on a free port, until the block ends."""
     told: list[Running] = []
@@ -84,7 +86,7 @@ def served(
         ready.set()
 
     asked = access_for(port=0) if access is None else access
-    thread = threading.Thread(target=serve, args=(make_app, asked, announce))
+    thread = threading.Thread(target=serve, args=(make_app, asked, announce, ending))
     thread.start()
     try:
         assert ready.wait(PATIENCE)

@@ -18,7 +18,7 @@ from costeer.web import intake, serving
 from costeer.web.app import MOST_PAGES, drive_app
 from costeer.web.messages import Input, Set, Start
 from costeer.web.pages import file_in, start_page, static_folder
-from costeer.web.serving import Running, listening
+from costeer.web.serving import Ending, Running, listening
 from costeer.web.session import MOST_FRAMES, Outbox
 from tests.waiting import PATIENCE, wait_for
 from tests.web.served import FakeSession, fetch, page_files, served, socket_of
@@ -78,6 +78,8 @@ def test_page_and_files_come_with_their_types(running: Running) -> None:
         "/vendor/",
         "/main.js/",
         "/nothing.js",
+        "/" + 300 * "a",
+        "/" + 300 * "a/",
         "/%ff",
     ],
 )
@@ -171,6 +173,18 @@ def test_only_the_experimenter_tunes(running: Running, session: FakeSession) -> 
             "text": "gain 'unknown' is not known; choose another",
         }
     assert session.applied[0] == ("experimenter", Set("gain", 2.0))
+
+
+@pytest.mark.parametrize("word", ["restart", "stop"])
+def test_a_driver_neither_restarts_nor_stops(
+    running: Running, session: FakeSession, word: str
+) -> None:
+    session.applied.clear()
+    with socket_of(running) as socket:
+        told(socket)
+        socket.send(f'{{"type":"{word}"}}')
+        assert "only the experimenter" in told(socket)["text"]
+    assert session.applied == []
 
 
 def test_frames_and_markers_reach_every_page(
@@ -278,6 +292,22 @@ def test_a_slow_page_loses_old_frames_but_no_text() -> None:
     *texts, frames = asyncio.run(late())
     assert texts == [str(number) for number in range(MOST_FRAMES + 5)]
     assert frames == bytes(range(5, MOST_FRAMES + 5))
+
+
+def test_pages_are_told_before_their_server_ends(static: Path) -> None:
+    session, ends = FakeSession(), []
+    ending = Ending(
+        lambda: ends.append("noted"),
+        lambda: session.broadcast.send({"type": "farewell"}),
+    )
+    with (
+        served(lambda a: drive_app(session, a, static), ending=ending) as running,
+        socket_of(running) as socket,
+    ):
+        told(socket)
+        running.stop()
+        assert told(socket)["type"] == "farewell"
+        assert (ends, session.left) == (["noted"], [])
 
 
 def test_a_stopped_server_lets_its_sockets_go(static: Path) -> None:

@@ -10,8 +10,9 @@ import numpy as np
 import pytest
 
 from costeer.methods.ibhs import TUNABLES
-from costeer.runtime.frame import FRAME_COLUMNS, PLACE
+from costeer.runtime.frame import FRAME_COLUMNS, PLACE, WIDTH
 from costeer.runtime.markers import Marker
+from costeer.runtime.states import Fault, Loss, RunState
 from costeer.web.drive import DriveOnPages, PageOptions
 from costeer.web.messages import (
     Indicator,
@@ -176,7 +177,7 @@ def test_hello_tells_states_and_faults_by_their_numbers_in_a_frame(
         *("not_finite", "stalled", "loop_gone"),
     ]
     final = [each["name"] for each in faults.values() if not each["can_resume"]]
-    assert final == ["not_finite", "loop_gone"]
+    assert final == ["not_finite", "record_stopped", "unwatched", "loop_gone"]
 
 
 def told_of(session: DriveOnPages) -> list[dict[str, Any]]:
@@ -249,3 +250,31 @@ def test_whoever_else_listens_is_told_the_same(session: DriveOnPages) -> None:
     session._mark(Marker("started"))
     assert len(frames) == 1
     assert markers == [Marker("started")]
+
+
+def test_pages_that_close_as_the_drive_ends_are_not_lost(
+    session: DriveOnPages, sent: Sent
+) -> None:
+    session.client_joined("driver")
+    session.end_soon()  # Ctrl-C
+    session.client_left("driver")
+    assert sent.commands == []
+    ends: list[str] = []
+    session.drive.end_trial = lambda: ends.append("told")  # type: ignore[method-assign]  # instead of a process
+    session.say_goodbye()
+    assert ends == ["told"]
+
+
+def test_page_that_comes_later_is_told_where_the_trial_stands_and_what_is_lost(
+    session: DriveOnPages,
+) -> None:
+    first = session.hello("driver")
+    assert (first["run_state"], first["fault"], first["losses"]) == (0, 0, [])
+    frame = np.zeros(WIDTH)
+    frame[PLACE["run_state"]] = RunState.PAUSED
+    frame[PLACE["fault"]] = Fault.LOOP_GONE
+    session._tell(frame)
+    session.drive._helpers.losses.append(Loss.NETWORK)
+    then = session.hello("experimenter")
+    assert (then["run_state"], then["fault"]) == (RunState.PAUSED, Fault.LOOP_GONE)
+    assert then["losses"] == [Loss.NETWORK.text]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from pathlib import Path
 
 import numpy as np
@@ -186,3 +187,34 @@ def test_the_server_gives_hello_and_record(replay: Replay, tmp_path: Path) -> No
     assert record.body == replay.rows
     assert record.headers["Content-Type"] == "application/octet-stream"
     assert (page.status, socket.status) == (200, 404)
+
+
+EVIL = '<img src=x onerror="alert(1)">'
+
+
+@pytest.mark.parametrize("value", [math.nan, math.inf, -1e308, EVIL, None, [1.0], True])
+def test_description_that_cannot_be_drawn_is_replaced_by_what_is_usual(
+    record: TrialRecord, value: object
+) -> None:
+    names = ("lane_width", "num_lanes", "length", "overtaking_side")
+    about = {
+        "configuration": {
+            "road": dict.fromkeys(names, value),
+            "car": dict.fromkeys(("width", "front_distance", "steering_ratio"), value),
+        },
+        "torque_limit": value,
+        "condition": value,
+        "method": value,
+    }
+    hello = replay_of(TrialRecord(about, record.columns), "t").hello
+    usual = replay_of(TrialRecord({}, record.columns), "t").hello
+    for name in ("road", "car", "torque_limit"):
+        assert hello[name] == usual[name]
+    assert hello["condition"] == (EVIL if value == EVIL else "")
+
+
+def test_number_that_is_infinite_is_a_gap(record: TrialRecord) -> None:
+    torque = record.columns["driver_torque"].copy()
+    torque[3] = np.inf
+    rows = rows_of(replay_of(changed(record, driver_torque=torque), "t"))
+    assert np.isnan(rows["driver_torque"][3])

@@ -192,3 +192,11 @@ def test_the_server_refuses_sockets_of_other_sites() -> None:
         with socket_of(running, origin=own_origin(running)) as socket:
             socket.recv()
     assert session.joined == ["driver"]
+
+
+@pytest.mark.parametrize("order", [1, -1])
+def test_one_right_origin_among_several_is_not_enough(order: int) -> None:
+    asked = asking(kind="ws")
+    origins = ["http://127.0.0.1:8700", "http://evil.example"][::order]
+    asked.scope["headers"] += [(b"origin", origin.encode()) for origin in origins]
+    assert "another site" in refusal(LOCAL, HTTPConnection(asked.scope))

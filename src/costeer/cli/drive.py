@@ -184,7 +184,7 @@ def run_drive(session: DriveOnPages, access: Access, browser: bool) -> None:
     """Start the processes, serve the pages until Ctrl-C or the experimenter's stop."""
     from costeer.runtime.clock import favour_thread
     from costeer.web.app import drive_app
-    from costeer.web.serving import open_page, serve
+    from costeer.web.serving import Ending, open_page, serve
 
     note("costeer: starting; the very first start compiles for up to a minute")
     session.drive.start()
@@ -197,17 +197,27 @@ def run_drive(session: DriveOnPages, access: Access, browser: bool) -> None:
         typer.echo(f"drive at:        {running.address}")
         typer.echo(f"experimenter at: {running.experimenter_address}")
         note(f"costeer: real-time process: {session.drive.priority}; Ctrl-C ends")
+        for loss in session.drive.losses:
+            note(f"costeer: {loss.text}")
         if browser:
             open_page(running.address)
 
     favour_thread()
     with suppress(KeyboardInterrupt):
-        serve(make_app, access, announce)
+        serve(make_app, access, announce, Ending(session.end_soon, session.say_goodbye))
 
 
 def tell_end(session: DriveOnPages) -> None:
-    """Print what is left of the drive."""
+    """Print what is left of the drive.
+
+    Raises:
+        typer.Exit: With 1 if something that was driven could not be kept.
+    """
     for line in session.account():
         note(f"costeer: {line}")
     for path in session.drive.kept:
         typer.echo(path)
+    for line in session.drive.unkept:
+        note(f"costeer: {line}")
+    if session.drive.unkept:
+        raise typer.Exit(1)

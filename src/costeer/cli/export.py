@@ -24,13 +24,17 @@ def export(
     """Write a trial record in the format of other programs.
 
     MCAP with Protobuf messages opens in Foxglove, PlotJuggler and rerun. Parquet makes
-    a trial record of the stream that a drive left which was cut off.
+    a trial record of the stream that a drive left which was cut off; of one whose name
+    ends in .wheel.arrow, the table of the wheel.
 
     Example:
         costeer export out/trial.parquet --to mcap --out out/trial.mcap
         costeer export out/drive.arrow --to parquet --out out/saved.parquet
     """
     _check_target(file, out, to)
+    if file.name.endswith(".wheel.arrow"):
+        _save_trace(file, out, to)
+        return
     from costeer.records.record import read_recording
 
     record = read_recording(file)
@@ -39,6 +43,21 @@ def export(
         _write(record, out, to)
     except ValueError as error:
         raise ValueError(f"{file}: {error}") from error
+    typer.echo(out)
+
+
+def _save_trace(file: Path, out: Path, to: str) -> None:
+    """Make Parquet of what a drive left of the wheel's trace.
+
+    Raises:
+        ValueError: If another format is asked for, or there is no row in it.
+    """
+    from costeer.runtime.stream import save_trace
+
+    if to != "parquet":
+        raise ValueError(f"--to is {to}; the wheel's trace becomes parquet only")
+    out.parent.mkdir(parents=True, exist_ok=True)
+    save_trace(file, out)
     typer.echo(out)
 
 

@@ -7,6 +7,7 @@ test calls them as fast as it likes and gets the same numbers.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -102,10 +103,14 @@ class Cabin:
 
     Args:
         setup: Of the drive.
+        is_released: Whether another process has told the wheel to let go.
     """
 
-    def __init__(self, setup: DriveSetup) -> None:
+    def __init__(
+        self, setup: DriveSetup, is_released: Callable[[], bool] = lambda: False
+    ) -> None:
         self._setup = setup
+        self._is_released = is_released
         self.method = drive_method(setup)
         self._parameters = drive_parameters(setup)
         self._tick = control_tick(self.method)
@@ -325,12 +330,24 @@ class Cabin:
         return wheel_tick(memory.plant, memory.motion, memory.held, memory.wheel)
 
     def _give(self, wheel: Wheel, torque: float) -> None:
-        """Write to the device, as often as it takes it."""
+        """Write to the device, as often as it takes it.
+
+        Whether it was told to let go is looked at last: a process that was halted
+        between reading and writing would push with what held before.
+        """
+        if self._is_released():
+            self.release()
+            torque = 0.0
         self.wheel_torque = torque
         self._skipped += 1
         if self._skipped * PLANT_DT * wheel.write_rate >= 1.0 - 1e-9:
             wheel.write(torque)
             self._skipped = 0
+
+    def release(self) -> None:
+        """Start from nothing: the device has let go without being told so from here."""
+        self._guard_state = GuardState()
+        self._wanted = self.wheel_torque = 0.0
 
     def check_wheel(self) -> None:
         """Refuse to begin with a real wheel that is turned, or whose angle is unknown.
@@ -355,9 +372,8 @@ class Cabin:
         """Go on with a wheel that was opened anew, or with none that answers."""
         self.wheel = wheel
         self._guard = guard_parameters(wheel)
-        self._guard_state = GuardState()
         self._observer = None
-        self._wanted = self.wheel_torque = 0.0
+        self.release()
 
 
 def guard_parameters(wheel: Wheel | None) -> GuardParameters:

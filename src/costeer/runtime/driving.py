@@ -16,15 +16,11 @@ from typing import Any
 import numpy as np
 
 from costeer.devices.head.source import STALE_AFTER
-from costeer.devices.wheels.calibration import WheelCalibration
-from costeer.devices.wheels.interface import (
-    Wheel,
-    WheelDescription,
-    WheelLost,
-)
+from costeer.devices.wheels.interface import EFFECT_LIFE, WheelLost
 from costeer.devices.wheels.registry import open_wheel
 from costeer.plant.road import adjacent_side
 from costeer.records.row import ROW_COLUMNS
+from costeer.runtime.bay import Bay, Opener
 from costeer.runtime.cabin import Cabin, Controls
 from costeer.runtime.choices import Choices
 from costeer.runtime.frame import FRAME, WIDTH, absent
@@ -47,6 +43,7 @@ from costeer.runtime.setup import (
 from costeer.runtime.shared import Shared
 from costeer.runtime.states import Fault, RunState
 from costeer.runtime.trace import Tracer
+from costeer.runtime.watchdog import stands_still
 
 NEVER = math.inf
 
@@ -83,35 +80,29 @@ class Driving:
         links: Links,
         shared: Shared,
         clock: Callable[[], float] = time.perf_counter,
-        opener: Callable[[WheelDescription, WheelCalibration], Wheel] = open_wheel,
+        opener: Opener = open_wheel,
     ) -> None:
         self._setup = setup
         self._links = links
         self._clock = clock
-        self._opener = opener
         self._mailbox, self._frames = shared.mailbox, shared.frames
         self._tracer = Tracer(shared.trace)
-        self._cabin = Cabin(setup)
+        self._cabin = Cabin(setup, self._is_released)
+        self._bay = Bay(setup, self._cabin, self._mailbox, clock, opener)
+        self._stepped_at = NEVER
         self._road = drive_parameters(setup).road
         self._draws = leader_draws(setup)
         self._frame = np.full(WIDTH, np.nan)
         self._own = np.array([absent(c) for c in drive_columns(setup)])
         self._choices = Choices(self._cabin, setup, self._mark)
         self._indicator = Indicator(self._mark)
-        self.stopping = False
+        self.stopping = self.is_told_to_end = False
         self._stop_at = NEVER
         self._run_state, self._fault = RunState.WAITING, Fault.NONE
         self._compute_time = self._applied = 0.0
         self._leaders = 0
-        self._last_event = 0.0
+        self._last_event = self._paused_at = 0.0
         links.wake.setblocking(False)
-
-    def _opened(self) -> Wheel | None:
-        """The wheel of the setup, open; None for virtual hands."""
-        wheel, calibration = self._setup.wheel, self._setup.calibration
-        if wheel is None or calibration is None:
-            return None
-        return self._opener(wheel, calibration)
 
     def warm_up(self) -> None:
         """Compile everything before the wheel is opened: some switch off when idle."""
@@ -123,19 +114,11 @@ class Driving:
         Raises:
             OSError: If it is not there.
         """
-        self._cabin.change_wheel(self._opened())
+        self._bay.open()
 
     def close(self) -> None:
         """Take the torque off the wheel and let it go; watched until it is done."""
-        self._mailbox.put(heartbeat=self._clock())
-        self._let_go()
-        self._mailbox.put(armed=0.0)
-
-    def _let_go(self) -> None:
-        """Close the wheel, also one that does not answer."""
-        if self._cabin.wheel is not None:
-            with suppress(OSError):
-                self._cabin.wheel.close()
+        self._bay.close()
 
     @property
     def _time(self) -> float:
@@ -246,31 +229,37 @@ class Driving:
 
     def plant_step(self, late: float) -> None:
         """Wheel and car one plant step on."""
-        if self._mailbox.get("stalled") > 0.5:
-            self._break_off(Fault.STALLED)
-        moving = self._run_state == RunState.RUNNING
         start = self._clock()
+        self._look_back(start)
+        moving = self._run_state == RunState.RUNNING
         try:
             self._cabin.advance(moving, self._fault != Fault.NONE)
         except WheelLost:
-            self._lose_wheel()
+            self._bay.lose()
             self._break_off(Fault.WHEEL_LOST)
-        now = self._clock()
+        self._stepped_at = now = self._clock()
         self._mailbox.put(heartbeat=now)
         reading = self._cabin.reading
         if moving and reading is not None and now - reading.time > WHEEL_PATIENCE:
             self._break_off(Fault.SENSOR_STALE)
         if moving:
             self._tracer.put(self._frame[_TIME], late, now - start, self._cabin)
-
-    def _lose_wheel(self) -> None:
-        """Let go of a wheel that is gone; that may take longer than is watched."""
-        self._mailbox.put(armed=0.0)
-        self._let_go()
-        self._cabin.change_wheel(None)
-        self._mailbox.put(heartbeat=self._clock(), armed=1.0)
+        else:
+            self._tracer.follow(late, now - start, self._cabin)
 
     # Safety
+
+    def _is_released(self) -> bool:
+        """Whether the watchdog has told the wheel to let go."""
+        return self._mailbox.get("stalled") > 0.5
+
+    def _look_back(self, now: float) -> None:
+        """Break off after having stood still, from the torque that is left: none."""
+        if self._is_released():
+            self._break_off(Fault.STALLED)
+        elif self._cabin.wheel is not None and now - self._stepped_at > EFFECT_LIFE:
+            self._cabin.release()
+            self._break_off(Fault.STALLED)
 
     def _look_around(self, now: float) -> None:
         """Stop what must not go on: no server, no page, no fresh reading."""
@@ -280,10 +269,19 @@ class Driving:
             self.stopping = True
         if self._run_state != RunState.RUNNING:
             return
+        if self._is_unwatched(now):
+            self._break_off(Fault.WATCHDOG_STILL)
         if self._setup.needs_page:
             silence = now - self._mailbox.get("page_time")
             if silence > PAGE_PATIENCE:
                 self._break_off(Fault.PAGE_LOST)
+
+    def _pause(self) -> None:
+        self._run_state, self._paused_at = RunState.PAUSED, self._clock()
+
+    def _is_unwatched(self, now: float) -> bool:
+        """Whether there is a wheel that nobody would stop."""
+        return self._setup.wheel is not None and stands_still(self._mailbox, now)
 
     def _break_off(self, fault: Fault) -> None:
         """Pause for a fault; the torque ends at once, the record is kept."""
@@ -291,13 +289,15 @@ class Driving:
             return
         self._fault = fault
         if self._run_state == RunState.RUNNING:
-            self._run_state = RunState.PAUSED
+            self._pause()
         self._mark(Marker("fault", fault.word))
 
     # Commands
 
     def _hear(self) -> None:
-        """Do what the server has asked for since the last control step."""
+        """Do what a signal or the server has asked for since the last step."""
+        if self.is_told_to_end:
+            self._do_stop()
         while self._links.commands.poll():
             try:
                 word, *values = self._links.commands.recv()
@@ -315,6 +315,8 @@ class Driving:
         self._links.commands.send(("marker", marker._replace(time=self._time)))
 
     def _do_stop(self) -> None:
+        if self._stop_at < NEVER:
+            return  # it was told before
         if self._run_state in (RunState.RUNNING, RunState.PAUSED):
             self._mark(Marker("ended", "server"))
         self._run_state = RunState.ENDED
@@ -331,31 +333,30 @@ class Driving:
     def _begin(self, kind: Kind) -> None:
         """Run, if wheel and numbers allow it."""
         self._forget_stall()
-        if self._setup.wheel is not None and self._cabin.wheel is None:
-            self._find_wheel()
+        if self._bay.is_empty:
+            self._bay.find()
+            self._stepped_at = NEVER
+        if self._is_unwatched(self._clock()):
+            raise ValueError(Fault.WATCHDOG_STILL.text)
         if not self._fault.can_resume:
             raise ValueError(self._fault.text)
         self._cabin.check_wheel()
         self._fault = Fault.NONE
         self._cabin.meet_wheel()
         self._run_state = RunState.RUNNING
-        self._mark(Marker(kind))
+        if kind == "started":
+            self._mark(Marker(kind))
+            return
+        stood = round(self._clock() - self._paused_at, 3)
+        self._mark(Marker(kind, after=stood, unit="s"))
 
     def _forget_stall(self) -> None:
         """The watchdog has told the wheel to let go: it is to be opened anew, once."""
-        if self._fault == Fault.STALLED:
+        if self._fault == Fault.STALLED or self._is_released():
             self._mailbox.put(stalled=0.0)
-            self._lose_wheel()
+            self._bay.lose()
+            self._stepped_at = NEVER
             self._fault = Fault.WHEEL_LOST
-
-    def _find_wheel(self) -> None:
-        """Open the wheel again; it may take longer than the watchdog waits."""
-        self._mailbox.put(armed=0.0)
-        try:
-            self._cabin.change_wheel(self._opened())
-            self._cabin.advance(False, True)
-        finally:
-            self._mailbox.put(heartbeat=self._clock(), armed=1.0)
 
     def _do_leave(self) -> None:
         if self._run_state == RunState.RUNNING and self._setup.needs_page:
@@ -363,17 +364,30 @@ class Driving:
 
     def _do_pause(self, why: str) -> None:
         if self._run_state == RunState.RUNNING:
-            self._run_state = RunState.PAUSED
+            self._pause()
             self._mark(Marker("paused", why))
 
     def _do_restart(self) -> None:
         self._forget_stall()
-        self._fault = Fault.NONE  # a wheel that is lost is looked for at the start
+        if self._fault not in (Fault.RECORD_STOPPED, Fault.UNWATCHED):
+            self._fault = Fault.NONE  # a lost wheel is looked for at the start
+        self._tracer.leave()
         self._cabin.begin()
         self._leaders, self._last_event = 0, 0.0
         self._indicator.forget()
         self._run_state = RunState.WAITING
         self._mark(Marker("restarted"))
+
+    def _do_unwatched(self) -> None:
+        self._break_off(Fault.UNWATCHED)
+
+    def _do_unrecorded(self, is_so: bool) -> None:
+        """Wait while nothing can be recorded; say so once it can."""
+        if is_so:
+            self._break_off(Fault.RECORD_STOPPED)
+        elif self._fault == Fault.RECORD_STOPPED:
+            paused = self._run_state == RunState.PAUSED
+            self._fault = Fault.RECORD_MENDED if paused else Fault.NONE
 
     def _do_indicator(self, side: float) -> None:
         self._indicator.put(float(side), self._time)

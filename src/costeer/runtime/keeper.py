@@ -17,7 +17,14 @@ from costeer.runtime.markers import Marker
 from costeer.runtime.recorder import Recorder, drive_metadata
 from costeer.runtime.setup import DriveSetup, drive_columns
 from costeer.runtime.shared import Shared
-from costeer.runtime.stream import RecordStream, finish, next_free, record_paths
+from costeer.runtime.stream import (
+    RecordPaths,
+    RecordStream,
+    finish,
+    next_free,
+    record_paths,
+    rescue,
+)
 
 _NOT_OF_THE_TRIAL = ("error", "restarted")
 """Kinds of markers that say nothing of what was driven."""
@@ -34,6 +41,7 @@ class Keeper:
         setup: Of the drive.
         record: File of the first trial; the next get a number. None keeps nothing.
         tell: Is told what could not be kept.
+        halt: Is told why nothing is recorded now, and "" once it is again.
 
     Raises:
         ValueError: If the name is none for a record.
@@ -41,16 +49,24 @@ class Keeper:
     """
 
     def __init__(
-        self, setup: DriveSetup, record: Path | None, tell: Callable[[str], None]
+        self,
+        setup: DriveSetup,
+        record: Path | None,
+        tell: Callable[[str], None],
+        halt: Callable[[str], None] = lambda reason: None,
     ) -> None:
         self._setup = setup
         self._record = record
         self._tell = tell
+        self._halt = halt
         self._chosen = first_choice(setup)
         self._recorder: Recorder | None = None
         self._first = (0, 0)
+        self._is_halted = False
         self._finishing: list[threading.Thread] = []
+        self._early: list[Marker] | None = None
         self.kept: list[Path] = []
+        self.unkept: list[str] = []
         if record is not None:
             record_paths(record)
             record.parent.mkdir(parents=True, exist_ok=True)
@@ -62,48 +78,84 @@ class Keeper:
         self._chosen = followed(self._chosen, marker)
         if marker.kind == "restarted":
             self._first = (shared.frames.written, shared.trace.written)
-            self.finish()
-        if marker.kind == "started" and self._recorder is None:
-            self._begin(shared)
-        if marker.kind not in _NOT_OF_THE_TRIAL and self._recorder is not None:
-            self._recorder.mark(marker)
+            self.finish(waits=False)
+        if marker.kind == "started" and self._recorder is None and self._record:
+            self._early = []
+            self.retry(shared)
+        if marker.kind not in _NOT_OF_THE_TRIAL:
+            self._keep(marker)
         if marker.kind == "ended":
             self.finish()
 
-    def _begin(self, shared: Shared) -> None:
-        """Open the streams of a trial that has just started."""
-        if self._record is None:
+    def _keep(self, marker: Marker) -> None:
+        """Put a marker into the record, or aside for one that could not begin yet."""
+        if self._recorder is not None:
+            self._recorder.mark(marker)
+        elif self._early is not None:
+            self._early.append(marker)
+
+    def retry(self, shared: Shared) -> None:
+        """Begin the record of a trial that has started, if it has not begun yet."""
+        if self._record is None or self._early is None:
             return
         try:
-            paths = record_paths(next_free(self._record))
-            described = drive_metadata(
-                chosen_setup(self._setup, self._chosen),
-                chosen_parameters(self._setup, self._chosen),
-            )
-            stream = RecordStream(paths, described, drive_columns(self._setup))
+            stream = self._opened(self._record)
         except (OSError, ValueError) as error:
-            self._tell(f"the record cannot be written: {error}")
+            if not self._is_halted:
+                self._is_halted = True
+                self._halt(f"the record cannot be written: {error}")
             return
-        self._recorder = Recorder(shared, stream, self._tell, self._first)
+        if self._is_halted:
+            self._is_halted = False
+            self._halt("")
+        self._recorder = Recorder(shared, stream, self._halt, self._first)
+        for marker in self._early:
+            self._recorder.mark(marker)
+        self._early = None
         self._recorder.start()
 
-    def finish(self) -> None:
+    def _opened(self, record: Path) -> RecordStream:
+        """The streams of a trial that has just started.
+
+        Raises:
+            OSError: If they cannot be written.
+        """
+        described = drive_metadata(
+            chosen_setup(self._setup, self._chosen),
+            chosen_parameters(self._setup, self._chosen),
+        )
+        paths = record_paths(next_free(record))
+        return RecordStream(paths, described, drive_columns(self._setup))
+
+    def finish(self, waits: bool = True) -> None:
         """Make the record of a trial that is over whole, in a thread of its own."""
+        if self._early is not None:
+            self._early = None
+            self._lose("nothing of a trial could be recorded")
+        if self._is_halted:
+            self._is_halted = False
+            self._halt("")
         recorder, self._recorder = self._recorder, None
         if recorder is None:
             return
-        thread = threading.Thread(target=self._finish, args=(recorder,))
+        thread = threading.Thread(target=self._finish, args=(recorder, waits))
         thread.start()
         self._finishing.append(thread)
 
-    def _finish(self, recorder: Recorder) -> None:
+    def _finish(self, recorder: Recorder, waits: bool) -> None:
         paths = recorder.stream.paths
         try:
-            recorder.stop()
+            recorder.stop(waits)
             if finish(paths, recorder.stream.num_rows):
                 self.kept.append(paths.record)
         except (OSError, ValueError) as error:
-            self._tell(f"{error}; what was driven is in {paths.stream}")
+            missing = recorder.stream.missing
+            self._lose(f"{error}; {_left(paths)}" + (f"; {missing}" if missing else ""))
+
+    def _lose(self, text: str) -> None:
+        """Say what was not kept, now and at the end of the drive."""
+        self.unkept.append(text)
+        self._tell(text)
 
     def close(self) -> None:
         """Finish what is open; returns when every record is whole.
@@ -113,3 +165,10 @@ class Keeper:
         self.finish()
         for thread in self._finishing:
             thread.join()
+
+
+def _left(paths: RecordPaths) -> str:
+    """What there is of a record that could not be made whole."""
+    if paths.stream.exists():
+        return f"what was driven is in {paths.stream}; {rescue(paths)}"
+    return f"{paths.stream} is gone, and what was driven with it"

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import Literal, NamedTuple
 
-from costeer.runtime.states import Fault
+from costeer.runtime.states import Fault, Loss
 
 Kind = Literal[
     "started",
@@ -21,10 +21,13 @@ Kind = Literal[
     "parameter",
     "indicator",
     "fault",
+    "gap",
+    "lost",
     "error",
     "note",
 ]
-"""What can happen; `note` is what this version does not know."""
+"""What can happen; `gap` is a stretch that could not be recorded, `lost` a helper that
+has ended, `note` what this version does not know."""
 
 Value = float | str | None
 
@@ -37,7 +40,7 @@ class Marker(NamedTuple):
         name: Which one, where the kind does not say it: the parameter, the fault, who
             paused it or what ended it.
         before: What a change replaced: a name or a number.
-        after: What holds since.
+        after: What holds since; of `resumed` and `gap` how long it took.
         unit: Of the numbers; "-" if they have none.
         time: Of the trial [s].
         note: What only words can say: an error, what other programs wrote.
@@ -61,6 +64,11 @@ _REASONS = {
     "server": "the drive was stopped",
 }
 
+_LENGTHS = {
+    "resumed": "after a pause of {:.1f} s",
+    "gap": "the next {:.3f} s could not be recorded",
+}
+
 
 def told(marker: Marker) -> str:
     """The marker in words, for people."""
@@ -71,12 +79,17 @@ def told(marker: Marker) -> str:
 
 def _said(marker: Marker) -> str:
     """What fields say besides the kind."""
+    if marker.kind in _LENGTHS and isinstance(marker.after, float):
+        return _LENGTHS[marker.kind].format(marker.after)
     if marker.after is not None:
         unit = "" if marker.unit in ("", "-") else f" {marker.unit}"
         before = "" if marker.before is None else f"{_shown(marker.before)} → "
         return f"{before}{_shown(marker.after)}{unit}"
     if marker.kind == "fault":
         texts = {fault.word: fault.text for fault in Fault}
+        return texts.get(marker.name, marker.name)
+    if marker.kind == "lost":
+        texts = {loss.word: loss.text for loss in Loss}
         return texts.get(marker.name, marker.name)
     return _REASONS.get(marker.name, marker.name)
 

@@ -14,5 +14,8 @@ WHEEL_PATIENCE = 0.05
 VERDICT_PATIENCE = 6
 """Frames after which the network's last verdict no longer counts [-]."""
 
+WATCHDOG_PATIENCE = 0.3
+"""A watchdog that has not looked for so long watches nobody [s]."""
+
 STOP_PATIENCE = 0.4
 """The torque has faded out by then; the process ends anyhow [s]."""

@@ -23,11 +23,13 @@ from costeer.runtime.driving import Driving
 from costeer.runtime.links import Links
 from costeer.runtime.setup import PLANT_DT, PLANT_STEPS, DriveSetup
 from costeer.runtime.shared import Shared, close_shared, open_shared
+from costeer.runtime.watchdog import ignore
 
 
 def run_realtime(setup: DriveSetup, links: Links) -> None:
     """Drive until told to stop or left alone: the target of the spawned process."""
-    ignore(signal.SIGINT)  # the server says when to stop
+    ignore("SIGINT")  # the server says when to stop
+    ignore("SIGTSTP")  # Ctrl-Z halts the server; that is noticed here
     shared = open_shared(links.memory)
     drive: Driving | None = None
     try:
@@ -51,16 +53,11 @@ def run_realtime(setup: DriveSetup, links: Links) -> None:
         close_shared(shared, unlink=False)
 
 
-def ignore(number: signal.Signals) -> None:
-    """Let a signal pass."""
-    signal.signal(number, signal.SIG_IGN)
-
-
 def end_at_signals(drive: Driving) -> None:
-    """End with the torque off when the system or a closed terminal says so."""
+    """Fade out and end when the system or a closed terminal says so."""
 
     def end(*_: object) -> None:
-        drive.stopping = True
+        drive.is_told_to_end = True
 
     for name in ("SIGTERM", "SIGHUP", "SIGQUIT", "SIGBREAK"):
         if number := getattr(signal, name, None):

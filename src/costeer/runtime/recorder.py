@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import threading
+import time
 from collections.abc import Callable
 from typing import Any
 
@@ -10,13 +11,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from costeer.base.described import described
-from costeer.loop.parameters import LoopParameters
+from costeer.loop.parameters import DT, LoopParameters
 from costeer.loop.scenario import is_assisted
 from costeer.loop.trial import trial_metadata, trial_predictor
 from costeer.records.columns import COLUMNS
 from costeer.records.metadata import PERSON
 from costeer.runtime.frame import FRAME, PLACE
 from costeer.runtime.markers import Marker
+from costeer.runtime.patience import STOP_PATIENCE
 from costeer.runtime.setup import DriveSetup, drive_parameters
 from costeer.runtime.shared import Shared
 from costeer.runtime.states import RunState
@@ -77,7 +79,8 @@ class Recorder:
     Args:
         shared: Memory of the drive.
         stream: Where the trial is kept.
-        failed: Is called with a reason if nothing more can be kept.
+        told: Is called with the reason when nothing can be written, and with "" once
+            it can again.
         first: Numbers of the frame and the row of the trace to begin with.
     """
 
@@ -85,15 +88,17 @@ class Recorder:
         self,
         shared: Shared,
         stream: RecordStream,
-        failed: Callable[[str], None],
+        told: Callable[[str], None],
         first: tuple[int, int] = (0, 0),
     ) -> None:
         self._shared = shared
         self.stream = stream
-        self._failed = failed
+        self._told = told
+        self._trouble = ""
         self._markers: list[Marker] = []
         self._next_frame, self._next_trace = first
         self._last_time = self._last_traced = -1.0
+        self._waits = True
         self._stop = threading.Event()
         self._lock = threading.Lock()
         self._thread = threading.Thread(target=self._run, daemon=True)
@@ -107,37 +112,73 @@ class Recorder:
         with self._lock:
             self._markers.append(marker)
 
-    def stop(self) -> None:
-        """Keep what is left, then close the streams."""
+    def stop(self, waits: bool = True) -> None:
+        """Keep what is left, then close the streams.
+
+        Args:
+            waits: Whether for the torque to fade out; not if the next trial begins.
+
+        Raises:
+            OSError: If the rest cannot be written.
+        """
+        self._waits = waits
         self._stop.set()
         if self._thread.is_alive():
             self._thread.join()
+        if self._trouble:
+            self._told("")  # the next trial finds out by itself
         self.stream.close()
 
     def _run(self) -> None:
+        while not self._stop.wait(INTERVAL):
+            self._try()
+        if self._waits:
+            self._await_rest()
+        self._try()
+
+    def _await_rest(self) -> None:
+        """Let the wheel's torque fade out, which belongs to the trace."""
+        deadline = time.monotonic() + 2.0 * STOP_PATIENCE
+        while self._is_pushed() and time.monotonic() < deadline:
+            time.sleep(0.02)
+
+    def _is_pushed(self) -> bool:
+        """Whether the newest frame tells of a torque at the wheel."""
+        ring = self._shared.frames
+        newest = ring.since(ring.written - 1)[1]
+        return bool((newest[:, PLACE["wheel_torque"]] != 0.0).any())
+
+    def _try(self) -> None:
+        """Write what is new; say when that fails, and when it succeeds again."""
         try:
-            while not self._stop.wait(INTERVAL):
-                self._take()
             self._take()
+            trouble = ""
         except (OSError, ValueError) as error:
-            self._failed(f"the record cannot be written: {error}")
+            trouble = f"the record cannot be written: {error}"
+        before, self._trouble = self._trouble, trouble
+        if bool(before) != bool(trouble):
+            self._told(trouble)
 
     def _take(self) -> None:
         """Move new rows of the running trial to the streams."""
         self._next_frame, frames = self._shared.frames.since(self._next_frame)
+        before = max(self._last_time, 0.0)
         rows = self._running(frames)
+        if len(rows) and (gap := rows[0, PLACE["time"]] - before) > 1.5 * DT:
+            self.mark(Marker("gap", after=round(gap, 3), unit="s", time=before))
         with self._lock:
             markers, self._markers = self._markers, []
         if len(rows) or markers:
             assisted = rows[:, PLACE["strength_factor"]] > 0.0
             own = rows[:, len(FRAME) :]
-            self.stream.write(
+            self.stream.add(
                 np.hstack([rows[:, : len(COLUMNS)], own]), assisted, markers
             )
         self._next_trace, traced = self._shared.trace.since(self._next_trace)
         traced = self._of_this_trial(traced)
         if len(traced):
-            self.stream.write_trace(traced)
+            self.stream.add_trace(traced)
+        self.stream.flush()
 
     def _of_this_trial(self, traced: NDArray[np.float64]) -> NDArray[np.float64]:
         """Rows of the trace up to where a new trial begins."""

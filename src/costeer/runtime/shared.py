@@ -8,6 +8,9 @@ being written is not taken for a whole one.
 
 from __future__ import annotations
 
+import os
+import signal
+import threading
 from contextlib import suppress
 from multiprocessing.shared_memory import SharedMemory
 from typing import NamedTuple
@@ -34,11 +37,13 @@ MAILBOX = (
     "head_yaw",
     "head_valid",
     "head_time",
+    "head_lost",
     "crossing_probability",
     "verdict_row",
     "heartbeat",
     "armed",
     "watching",
+    "watched_at",
     "reading",
     "stalled",
     "dismissed",
@@ -46,10 +51,11 @@ MAILBOX = (
 """Newest values only, [s] on the host's monotonic clock where it is a time.
 
 `page_time` is of the last word from a driver's page, `server_time` of the server's own
-life, `verdict_row` the number of the frame that the probability belongs to,
+life, `head_lost` 1 while there is no tracker of the head, `verdict_row` the number of
+the frame that the probability belongs to,
 `heartbeat` of the real-time process, `armed` 1 while the watchdog has to look,
-`watching` 1 once it does, `stalled` 1 once it had to act, `dismissed` 1 once it may go,
-and `reading` 1 once the network takes frames.
+`watching` 1 once it does, `watched_at` when it last did, `stalled` 1 once it had to
+act, `dismissed` 1 once it may go, and `reading` 1 once the network takes frames.
 """
 
 _PLACES = {name: place for place, name in enumerate(MAILBOX)}
@@ -143,14 +149,67 @@ _FRAMES = _ring_size(FRAME_ROWS, WIDTH)
 _TRACE = _ring_size(TRACE_ROWS, len(TRACE_COLUMNS))
 _TOTAL = len(MAILBOX) + _FRAMES + _TRACE
 
+NEEDED = 8 * _TOTAL
+"""Shared memory of a drive [bytes]."""
+
 
 def make_shared() -> Shared:
-    """Make the memory of a drive; close and unlink it in the end."""
-    memory = SharedMemory(create=True, size=8 * _TOTAL)
+    """Make the memory of a drive; close and unlink it in the end.
+
+    Raises:
+        ValueError: If the system has no room for it.
+    """
+    _start_tracker()
+    try:
+        memory = SharedMemory(create=True, size=8 * _TOTAL)
+    except OSError as error:
+        raise ValueError(_no_room()) from error
+    try:
+        _allocate(memory)
+    except OSError as error:
+        memory.close()
+        memory.unlink()
+        raise ValueError(_no_room()) from error
     shared = _view(memory)
     np.ndarray(_TOTAL, np.float64, memory.buf)[:] = 0.0
     shared.mailbox.put(head_yaw=0.0, crossing_probability=np.nan, verdict_row=-1.0)
     return shared
+
+
+def _start_tracker() -> None:
+    """Start what looks after shared memory so that a closed terminal leaves it alone.
+
+    It ignores Ctrl-C by itself, but would die of SIGHUP before those that it serves.
+    """
+    from multiprocessing import resource_tracker
+
+    number = getattr(signal, "SIGHUP", None)
+    if number is None or threading.current_thread() is not threading.main_thread():
+        return
+    before = signal.signal(number, signal.SIG_IGN)
+    try:
+        resource_tracker.ensure_running()
+    finally:
+        signal.signal(number, before)
+
+
+def _allocate(memory: SharedMemory) -> None:
+    """Have the system give the memory now: later it would kill who writes to it.
+
+    Raises:
+        OSError: If there is too little.
+    """
+    descriptor = getattr(memory, "_fd", -1)  # there is no other way to it
+    if hasattr(os, "posix_fallocate") and descriptor >= 0:
+        os.posix_fallocate(descriptor, 0, memory.size)
+
+
+def _no_room() -> str:
+    return (
+        f"shared memory lacks room for the {NEEDED / 1e6:.1f} MB of a drive; end other "
+        "programs that use /dev/shm or make it larger; costeer doctor says how much "
+        "there is"
+    )
 
 
 def open_shared(name: str) -> Shared:

@@ -76,15 +76,71 @@ class Fault(_Named):
     WHEEL_LOST = 1, "The steering wheel was lost. Plug it in again."
     PAGE_LOST = 2, "The page did not answer for a moment."
     SENSOR_STALE = 3, "The steering wheel says nothing new. Check its cable."
-    NOT_FINITE = 4, "A number was not finite. The trial must be restarted.", False
+    NOT_FINITE = (
+        4,
+        "A number was not finite. The experimenter must restart the trial.",
+        False,
+    )
     STALLED = (
         5,
         "The computer was too busy for a moment; costeer doctor says how to mend it.",
     )
+    WATCHDOG_STILL = (
+        7,
+        "The watchdog stood still, so that nobody watched the steering wheel.",
+    )
+    RECORD_STOPPED = (
+        8,
+        "The record cannot be written, so the trial waits. Make room on the disk; "
+        "costeer goes on trying.",
+        False,
+    )
+    UNWATCHED = (
+        10,
+        "The watchdog has ended, so that nobody watches the steering wheel. Start "
+        "costeer drive again.",
+        False,
+    )
+    RECORD_MENDED = 9, "The record can be written again."
     LOOP_GONE = (
         6,
         "The real-time process has ended. Start costeer drive again.",
         False,
+    )
+
+
+@unique
+class Loss(_Named):
+    """What a drive has lost and goes on without; both pages say so as long as it lasts.
+
+    Attributes:
+        text: For people: what it is, and the way out.
+    """
+
+    text: str
+
+    def __new__(cls, number: int, text: str) -> Self:
+        """A member with its words."""
+        loss = int.__new__(cls, number)
+        loss._value_ = number
+        loss.text = text
+        return loss
+
+    WATCHDOG = 1, Fault.UNWATCHED.text
+    NETWORK = (
+        2,
+        "The intention network has ended: no lane change is read any more. Start "
+        "costeer drive again.",
+    )
+    HEAD = (
+        3,
+        "The head tracker has ended: the head is not seen any more. Start costeer "
+        "drive again.",
+    )
+    CAMERA = (
+        4,
+        "The head tracker finds no camera or source: the head is not seen. Plug it in, "
+        "or look at costeer head calibrate.",
     )
 
 

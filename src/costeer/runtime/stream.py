@@ -1,14 +1,16 @@
 """The record of a drive while it goes on: Arrow streams that survive a kill.
 
 Every quarter of a second a batch is written and flushed, so a process that is killed
-loses no more than that. At the end the streams become Parquet, the trial record of
-the studies and beside it the wheel at the plant's rate.
+loses no more than that; beside each batch stands its checksum. At the end the streams
+become Parquet, the trial record of the studies and beside it the wheel at the plant's
+rate.
 """
 
 from __future__ import annotations
 
 import json
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
 from typing import NamedTuple
@@ -20,7 +22,7 @@ import pyarrow.parquet as pq
 from numpy.typing import NDArray
 
 from costeer.base.files import replacing
-from costeer.records.arrow import record_schema, to_table
+from costeer.records.arrow import METADATA_KEY, batch_checksum, record_schema, to_table
 from costeer.records.checks import validated
 from costeer.records.columns import Column, TrialRecord, with_method_columns
 from costeer.records.metadata import CLOCK_FIELDS
@@ -32,8 +34,13 @@ from costeer.records.record import (
     write_record,
 )
 from costeer.records.row import record_columns
+from costeer.records.stream import CHECKSUM_KEY
+from costeer.runtime.appended import AppendedFile
 from costeer.runtime.frame import TRACE
 from costeer.runtime.markers import Marker, as_json
+
+TRACE_KEY = b"costeer.wheel"
+"""In the schema of the wheel's trace: the description of the trial, as JSON."""
 
 
 class RecordPaths(NamedTuple):
@@ -91,10 +98,17 @@ def check_free(record: Path) -> None:
             raise ValueError(f"{path} exists; choose another --record")
     if paths.stream.exists() or paths.trace_stream.exists():
         raise ValueError(
-            f"{paths.stream} is what a drive left that was cut off; make a record of "
-            f"it with: costeer export {paths.stream} --to parquet --out NAME.parquet, "
+            f"{paths.stream} is what a drive left that was cut off; {rescue(paths)}, "
             "or choose another --record"
         )
+
+
+def rescue(paths: RecordPaths) -> str:
+    """The command that makes a record of what a drive left, in words."""
+    return (
+        f"make a record of it with: costeer export {paths.stream} --to parquet --out "
+        "NAME.parquet"
+    )
 
 
 class RecordStream:
@@ -124,13 +138,20 @@ class RecordStream:
         self._now = now
         self._started: datetime | None = None
         self.num_rows = 0
+        self.kept_until = self._given_until = 0.0
         paths.stream.parent.mkdir(parents=True, exist_ok=True)
         self._schema = record_schema(metadata, method_columns)
-        self._file = paths.stream.open("xb")
-        self._writer = pa.ipc.new_stream(self._file, self._schema)
-        self._trace_file = paths.trace_stream.open("xb")
-        self._trace = pa.ipc.new_stream(self._trace_file, trace_schema())
-        self._file.flush()
+        self._trace_schema = trace_schema(self._schema.metadata[METADATA_KEY])
+        self._file = AppendedFile(paths.stream)
+        try:
+            self._writer = pa.ipc.new_stream(self._file, self._schema)
+            self._trace_file = AppendedFile(paths.trace_stream)
+            self._trace = pa.ipc.new_stream(self._trace_file, self._trace_schema)
+            self.flush()
+        except OSError:
+            for path in (paths.stream, paths.trace_stream):
+                path.unlink(missing_ok=True)
+            raise
 
     def write(
         self,
@@ -140,6 +161,20 @@ class RecordStream:
     ) -> None:
         """Append a batch and flush it.
 
+        Raises:
+            OSError: If it cannot be written; it waits for the next `flush`.
+        """
+        self.add(rows, assisted, markers)
+        self.flush()
+
+    def add(
+        self,
+        rows: NDArray[np.float64],
+        assisted: NDArray[np.bool_],
+        markers: list[Marker],
+    ) -> None:
+        """Append a batch, which waits to be flushed.
+
         Args:
             rows: Of the loop, more columns may follow, shape `(time, column)`; may be
                 none if there are markers.
@@ -148,12 +183,32 @@ class RecordStream:
         """
         batch = self._batch(rows[:, : len(self._columns)], assisted)
         told = json.dumps([as_json(marker) for marker in markers])
-        beside = {MARKERS_KEY: told} if markers else {}
+        beside = {CHECKSUM_KEY: checksum(batch)}
+        if markers:
+            beside[MARKERS_KEY] = told.encode()
         if len(rows):
-            beside[CLOCK_KEY] = json.dumps(self._clock(batch))
+            beside[CLOCK_KEY] = json.dumps(self._clock(batch)).encode()
+            self._given_until = batch.column("time")[-1].as_py()
         self._writer.write_batch(batch, custom_metadata=beside)
-        self._file.flush()
         self.num_rows += len(rows)
+
+    def flush(self) -> None:
+        """Write what waits.
+
+        Raises:
+            OSError: If it cannot be written; it goes on waiting.
+        """
+        self._file.flush()
+        self.kept_until = self._given_until
+        self._trace_file.flush()
+
+    @property
+    def missing(self) -> str:
+        """What could not be written, in words; "" if there is nothing."""
+        if self._file.is_whole:
+            return ""
+        lacking = self._given_until - self.kept_until
+        return f"it lacks {lacking:.1f} s at its end" if lacking else "it lacks markers"
 
     def _batch(
         self, rows: NDArray[np.float64], assisted: NDArray[np.bool_]
@@ -175,27 +230,52 @@ class RecordStream:
         return {name: each.isoformat(timespec="seconds") for name, each in moments}
 
     def write_trace(self, rows: NDArray[np.float64]) -> None:
-        """Append rows of the wheel at the plant's rate and flush them."""
+        """Append rows of the wheel at the plant's rate and flush them.
+
+        Raises:
+            OSError: If they cannot be written; they wait for the next `flush`.
+        """
+        self.add_trace(rows)
+        self.flush()
+
+    def add_trace(self, rows: NDArray[np.float64]) -> None:
+        """Append rows of the wheel, which wait to be flushed."""
         # Not `pa.array`, which imports pandas: seconds, in the middle of a drive.
         arrays = [
             pa.Array.from_buffers(pa.float64(), len(rows), [None, pa.py_buffer(column)])
             for column in np.ascontiguousarray(rows.T)
         ]
-        self._trace.write_batch(pa.record_batch(arrays, schema=trace_schema()))
-        self._trace_file.flush()
+        batch = pa.record_batch(arrays, schema=self._trace_schema)
+        beside = {CHECKSUM_KEY: checksum(batch)}
+        self._trace.write_batch(batch, custom_metadata=beside)
 
     def close(self) -> None:
-        """End the streams; the files stay as they are."""
-        for writer, file in (
-            (self._writer, self._file),
-            (self._trace, self._trace_file),
-        ):
-            writer.close()
-            file.close()
+        """End the streams; the files stay as they are.
+
+        Raises:
+            OSError: If something still waits that cannot be written; it is lost.
+        """
+        try:
+            self.flush()
+            for writer in (self._writer, self._trace):
+                writer.close()
+            self.flush()
+        finally:
+            for file in (self._file, self._trace_file):
+                file.close()
 
 
-def trace_schema() -> pa.Schema:
-    """Schema of the wheel's trace, with units."""
+def checksum(batch: pa.RecordBatch) -> bytes:
+    """Checksum of a batch as a reader of the stream will find it.
+
+    Arrow leaves out the mask of a column without gaps as it writes.
+    """
+    found = pa.ipc.read_record_batch(batch.serialize(), batch.schema)
+    return str(batch_checksum(found)).encode()
+
+
+def trace_schema(trial: bytes) -> pa.Schema:
+    """Schema of the wheel's trace, with units and the description of the trial."""
     return pa.schema(
         [
             pa.field(
@@ -205,7 +285,8 @@ def trace_schema() -> pa.Schema:
                 metadata={"unit": column.unit, "description": column.description},
             )
             for column in TRACE
-        ]
+        ],
+        metadata={TRACE_KEY: trial},
     )
 
 
@@ -239,10 +320,18 @@ def finish(paths: RecordPaths, num_rows: int) -> bool:
 
 def _finish_trace(paths: RecordPaths) -> None:
     """The wheel's trace as Parquet, whole or not at all."""
-    try:
-        stream = whole_batches(paths.trace_stream)
-    except (ValueError, FileNotFoundError):
-        return
-    with replacing(paths.trace, durable=True) as partial:
+    with suppress(ValueError, FileNotFoundError):  # there was no wheel to trace
+        save_trace(paths.trace_stream, paths.trace)
+
+
+def save_trace(stream_file: Path, out: Path) -> None:
+    """Make Parquet of the stream of a wheel's trace, also of one that was cut off.
+
+    Raises:
+        ValueError: If there is no row in it.
+        OSError: If it cannot be read or written.
+    """
+    stream = whole_batches(stream_file)
+    with replacing(out, durable=True) as partial:
         table = pa.Table.from_batches(stream.batches)
         pq.write_table(table, partial, compression="zstd")

@@ -8,7 +8,6 @@ the controller one control step later than in a simulated trial.
 from __future__ import annotations
 
 import math
-import signal
 import time
 from collections.abc import Callable
 from functools import partial
@@ -24,8 +23,9 @@ from costeer.loop.parameters import DT
 from costeer.plant.parameters import RoadParameters
 from costeer.runtime.frame import PLACE
 from costeer.runtime.patience import SERVER_PATIENCE
-from costeer.runtime.shared import close_shared, open_shared
+from costeer.runtime.shared import Mailbox, close_shared, open_shared
 from costeer.runtime.states import RunState
+from costeer.runtime.watchdog import ignore
 
 INTERVAL = 0.002
 """Between two looks at the ring [s]."""
@@ -79,6 +79,12 @@ def _asked(predictor: ChosenPredictor, absent: tuple[str, ...]) -> Callable[[], 
     return lambda: partial(advance, weights, initial_state(weights, absent))
 
 
+def _is_needed(mailbox: Mailbox) -> bool:
+    """Whether the server is there and has not said that it is over."""
+    silence = time.perf_counter() - mailbox.get("server_time")
+    return silence < SERVER_PATIENCE and mailbox.get("dismissed") < 0.5
+
+
 def run_network(
     memory: str,
     road: RoadParameters,
@@ -87,14 +93,15 @@ def run_network(
     weights: str | None,
 ) -> None:
     """Give verdicts until the server is gone: target of a spawned process."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    for name in ("SIGINT", "SIGTERM", "SIGHUP"):  # the server says when to stop
+        ignore(name)
     shared = open_shared(memory)
     reader = Reader(road, absent, chosen_predictor(predictor, weights))
     reader.warm_up()
     next_frame = shared.frames.written
     shared.mailbox.put(reading=1.0)
     try:
-        while time.perf_counter() - shared.mailbox.get("server_time") < SERVER_PATIENCE:
+        while _is_needed(shared.mailbox):
             next_frame, frames = shared.frames.since(next_frame)
             for frame in frames:
                 if frame[PLACE["run_state"]] == RunState.RUNNING:

@@ -4,6 +4,9 @@ It looks at the heartbeat of the real-time process every few milliseconds. If th
 stands still, it tells the wheel itself to let go, because not every device does so
 when its owner dies; a process that goes on afterwards finds its trial paused. One that
 stands still for longer is ended, so that the system takes back the device.
+
+The real-time process looks at the watchdog in turn, and the server looks on where the
+watchdog stands still.
 """
 
 from __future__ import annotations
@@ -17,6 +20,7 @@ from typing import NamedTuple
 from costeer.devices.wheels.interface import WheelDescription
 from costeer.devices.wheels.registry import emergency_stop, prepare_stop
 from costeer.runtime.clock import raise_priority
+from costeer.runtime.patience import WATCHDOG_PATIENCE
 from costeer.runtime.shared import Mailbox, close_shared, open_shared
 
 PATIENCE = 0.08
@@ -56,6 +60,13 @@ def silence(mailbox: Mailbox, now: float) -> float:
     return now - mailbox.get("heartbeat")
 
 
+def stands_still(mailbox: Mailbox, now: float) -> bool:
+    """Whether a watchdog that had begun to look does so no more."""
+    if mailbox.get("watching") < 0.5:
+        return False
+    return now - mailbox.get("watched_at") > WATCHDOG_PATIENCE
+
+
 def run_watchdog(watched: Watched) -> None:
     """Look until there is nothing left to look after: target of a spawned process."""
     stay_until_needed_no_more()
@@ -64,12 +75,13 @@ def run_watchdog(watched: Watched) -> None:
     raise_priority(level=70)
     shared = open_shared(watched.memory)
     mailbox = shared.mailbox
-    mailbox.put(watching=1.0)
+    mailbox.put(watched_at=time.perf_counter(), watching=1.0)
     watch = Watch(watched, mailbox)
     try:
         while not (
             orphaned(mailbox, time.perf_counter()) or mailbox.get("dismissed") > 0.5
         ):
+            mailbox.put(watched_at=time.perf_counter())
             if watch.look(time.perf_counter()):
                 return
             time.sleep(INTERVAL)
@@ -109,10 +121,15 @@ class Watch:
 
 
 def stay_until_needed_no_more() -> None:
-    """Outlive whatever ends the process that is watched: Ctrl-C, a closed terminal."""
-    for name in ("SIGINT", "SIGHUP", "SIGQUIT", "SIGBREAK", "SIGTERM"):
-        if number := getattr(signal, name, None):
-            signal.signal(number, signal.SIG_IGN)
+    """Outlive whatever ends or halts the others: Ctrl-C and Ctrl-Z, a closed window."""
+    for name in ("SIGINT", "SIGHUP", "SIGQUIT", "SIGBREAK", "SIGTERM", "SIGTSTP"):
+        ignore(name)
+
+
+def ignore(name: str) -> None:
+    """Let a signal pass, where the system has it."""
+    if number := getattr(signal, name, None):
+        signal.signal(number, signal.SIG_IGN)
 
 
 def orphaned(mailbox: Mailbox, now: float) -> bool:

@@ -34,7 +34,7 @@ from costeer.runtime.setup import (
     drive_parameters,
     offered_methods,
 )
-from costeer.runtime.states import page_tables
+from costeer.runtime.states import Fault, RunState, page_tables
 from costeer.web.messages import (
     Indicator,
     Input,
@@ -98,6 +98,7 @@ class DriveOnPages:
         self._chosen = first_choice(setup)
         self.columns = frame_columns(drive_columns(setup))
         self.drive = Drive(setup, record, Listener(self._tell, self._mark))
+        self._stands = (RunState.WAITING.value, Fault.NONE.value)
 
     def also(
         self,
@@ -107,6 +108,16 @@ class DriveOnPages:
         """Tell frames and markers to someone else, too."""
         self._others.append(Listener(frame, marker))
 
+    def end_soon(self) -> None:
+        """Take what ends from now on as meant; a handler of a signal may call it."""
+        self.drive.is_ending = True
+
+    def say_goodbye(self) -> None:
+        """End the trial while its pages are still there, and tell them so."""
+        with suppress(ValueError):  # the loop has ended
+            self.drive.end_trial()
+        self.broadcast.send({"type": "farewell"})
+
     def stop(self) -> None:
         """End the drive; its record is made whole."""
         self.drive.stop()
@@ -114,6 +125,7 @@ class DriveOnPages:
     def _tell(self, frame: NDArray[np.float64]) -> None:
         """Pass a frame on to all pages."""
         self._late.take(frame)
+        self._stands = (int(frame[PLACE["run_state"]]), int(frame[PLACE["fault"]]))
         for other in self._others:
             other.frame(frame)
         shown = frame[: len(self.columns)]
@@ -127,10 +139,16 @@ class DriveOnPages:
             self.broadcast.send({"type": "error", "text": marker.note})
             return
         self.broadcast.send({"type": "marker", **marker_shown(marker)})
+        if marker.kind in ("lost", "note"):
+            self.broadcast.send({"type": "losses", "texts": self._losses()})
         chosen = followed(self._chosen, marker)
         if chosen is not self._chosen:
             self._chosen = chosen
             self.broadcast.send(self._state())
+
+    def _losses(self) -> list[str]:
+        """What the drive goes on without, for the pages."""
+        return [loss.text for loss in self.drive.losses]
 
     def _state(self) -> dict[str, object]:
         """What an experimenter has chosen."""
@@ -177,6 +195,9 @@ class DriveOnPages:
             "methods": list(offered_methods(self.drive.setup)),
             "method": self._chosen.method,
             **page_tables(),
+            "run_state": self._stands[0],
+            "fault": self._stands[1],
+            "losses": self._losses(),
             "tunables": self._tunables() if role == "experimenter" else [],
             "input": self._options.input,
             "show_signals": self._options.show_signals or role == "experimenter",
@@ -240,7 +261,7 @@ class DriveOnPages:
         if role != "driver":
             return
         self._num_drivers -= 1
-        if self._num_drivers == 0:
+        if self._num_drivers == 0 and not self.drive.is_ending:
             with suppress(ValueError):  # the drive has ended
                 self.drive.send("leave")
 

@@ -48,9 +48,12 @@ def file_in(folder: Path, path: str) -> Path | None:
     """
     if not _PATH.fullmatch(path):
         return None
-    file = (folder / path).resolve()
-    inside = file.is_relative_to(folder.resolve())
-    return file if inside and file.is_file() else None
+    try:
+        file = (folder / path).resolve()
+        inside = file.is_relative_to(folder.resolve())
+        return file if inside and file.is_file() else None
+    except OSError:  # a name that is longer than any file's
+        return None
 
 
 def start_page(folder: Path) -> Path | None:

@@ -12,7 +12,7 @@ from costeer.export.markers import markers_of
 from costeer.plant.parameters import CARS, CarParameters, RoadParameters
 from costeer.records.checks import check_time
 from costeer.records.columns import COLUMNS, COLUMNS_BY_NAME, Column, TrialRecord
-from costeer.web.messages import marker_shown, told_of
+from costeer.web.messages import LONGEST_NAME, marker_shown, told_of
 
 NEEDED = (
     "time",
@@ -23,6 +23,22 @@ NEEDED = (
     "steering_wheel_angle",
 )
 """Columns without which nothing can be shown."""
+
+_ROAD = {
+    "lane_width": (1.0, 20.0),
+    "num_lanes": (1.0, 20.0),
+    "length": (1.0, 1e6),
+    "overtaking_side": (-1.0, 1.0),
+}
+"""What a page can draw of a road, in the units of `RoadParameters`."""
+
+_CAR = {
+    "width": (0.5, 5.0),
+    "front_distance": (0.1, 10.0),
+    "rear_distance": (0.1, 10.0),
+    "steering_ratio": (1.0, 100.0),
+}
+"""The same of a car."""
 
 # Any: the element type differs from column to column.
 Values = NDArray[Any]
@@ -96,6 +112,7 @@ def _numbers(column: Column, values: Values) -> NDArray[np.float64]:
         raise ValueError(f"column {column.name} holds text; a replay needs numbers")
     numbers = np.ma.getdata(values).astype(np.float64)
     numbers[np.ma.getmaskarray(values)] = np.nan
+    numbers[np.isinf(numbers)] = np.nan  # a chart has no place for it
     return numbers
 
 
@@ -111,7 +128,7 @@ def _described(record: TrialRecord, title: str) -> dict[str, object]:
     """What the page is told of a record; where it tells nothing, what is usual."""
     about = record.metadata
     time = _numbers(COLUMNS_BY_NAME["time"], record.columns["time"])
-    condition, method = about.get("condition", ""), about.get("method", "")
+    condition, method = _word(about.get("condition")), _word(about.get("method"))
     return {
         "mode": "replay",
         "title": title,
@@ -127,8 +144,21 @@ def _described(record: TrialRecord, title: str) -> dict[str, object]:
         "tunables": [],
         "input": "wheel",
         "show_signals": True,
-        "torque_limit": about.get("torque_limit", 5.0),
+        "torque_limit": _number(about.get("torque_limit"), 5.0, 0.1, 100.0),
     }
+
+
+def _word(value: object) -> str:
+    """A name as the page shows it: short and printable, or none."""
+    fits = isinstance(value, str) and len(value) <= LONGEST_NAME
+    return str(value) if fits and str(value).isprintable() else ""
+
+
+def _number(value: object, usual: float, low: float, high: float) -> float:
+    """A number out of a record within what a page can draw, else what is usual."""
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        return usual
+    return float(value) if low <= value <= high else usual
 
 
 def _within(about: Mapping[str, object], name: str) -> Mapping[str, object]:
@@ -140,16 +170,23 @@ def _within(about: Mapping[str, object], name: str) -> Mapping[str, object]:
 
 def _road(about: Mapping[str, object]) -> dict[str, object]:
     """The road that was driven on."""
-    known = RoadParameters()._asdict() | dict(_within(about, "road"))
-    return {name: known[name] for name in RoadParameters._fields}
+    given, usual = _within(about, "road"), RoadParameters()._asdict()
+    return {
+        name: _number(given.get(name), float(usual[name]), *span)
+        for name, span in _ROAD.items()
+    }
 
 
 def _car(about: Mapping[str, object]) -> dict[str, object]:
     """The car that was driven."""
     usual = CARS.get(str(about.get("car")), CarParameters())
-    known: dict[str, Any] = usual._asdict() | dict(_within(about, "car"))
+    given = _within(about, "car")
+
+    def known(name: str) -> float:
+        return _number(given.get(name), float(getattr(usual, name)), *_CAR[name])
+
     return {
-        "width": known["width"],
-        "wheelbase": known["front_distance"] + known["rear_distance"],
-        "steering_ratio": known["steering_ratio"],
+        "width": known("width"),
+        "wheelbase": known("front_distance") + known("rear_distance"),
+        "steering_ratio": known("steering_ratio"),
     }

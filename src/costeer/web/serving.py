@@ -2,19 +2,24 @@
 
 from __future__ import annotations
 
+import asyncio
 import errno
 import logging
 import os
+import signal
 import socket
 import sys
 import threading
 import webbrowser
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from types import FrameType
 from typing import NamedTuple
 
 import uvicorn
 from starlette.types import ASGIApp
 
+from costeer.web.impatient import ImpatientProtocol
 from costeer.web.security import Access
 
 LARGEST_FRAME = 4096
@@ -22,6 +27,10 @@ LARGEST_FRAME = 4096
 
 SHUTDOWN = 2
 """Time that open sockets get to close when the server ends [s]."""
+
+
+FAREWELL = 0.1
+"""Time for a last word to the pages before their sockets close [s]."""
 
 
 class Running(NamedTuple):
@@ -40,10 +49,55 @@ class Running(NamedTuple):
     stop: Callable[[], None]
 
 
+class Ending(NamedTuple):
+    """Who is told that the server ends.
+
+    Attributes:
+        noted: At once, in the handler of a signal perhaps: it only sets a plain flag.
+        told: Before the sockets close, in the server's event loop.
+    """
+
+    noted: Callable[[], object] = int
+    told: Callable[[], object] = int
+
+
+class _Server(uvicorn.Server):
+    """Says that it ends while pages can still be told."""
+
+    ending = Ending()
+
+    def handle_exit(self, sig: int, frame: FrameType | None) -> None:
+        """Note a signal."""
+        self.ending.noted()
+        super().handle_exit(sig, frame)
+
+    async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:
+        """Tell who looks on, then close."""
+        self.ending.noted()
+        self.ending.told()
+        await asyncio.sleep(FAREWELL)
+        await super().shutdown(sockets)
+
+
+@contextmanager
+def _hung_up(server: _Server) -> Iterator[None]:
+    """End with a closed terminal as with any other signal."""
+    number = getattr(signal, "SIGHUP", None)
+    if number is None or threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    before = signal.signal(number, server.handle_exit)
+    try:
+        yield
+    finally:
+        signal.signal(number, before)
+
+
 def serve(
     make_app: Callable[[Access], ASGIApp],
     access: Access,
     announce: Callable[[Running], None],
+    ending: Ending | None = None,
 ) -> None:
     """Listen, say so, and answer until the server is stopped.
 
@@ -51,6 +105,7 @@ def serve(
         make_app: Makes the application, once the port is known.
         access: Where to listen and who may ask; port 0 takes any free one.
         announce: Is called when pages may be opened.
+        ending: Who is told that it ends.
 
     Raises:
         ValueError: If it cannot listen there.
@@ -58,7 +113,8 @@ def serve(
     """
     with listening(access.host, access.port) as listener:
         taken = access._replace(port=listener.getsockname()[1])
-        server = uvicorn.Server(_settings(make_app(taken)))
+        server = _Server(_settings(make_app(taken)))
+        server.ending = ending or Ending()
 
         def stop() -> None:
             server.should_exit = True
@@ -70,13 +126,15 @@ def serve(
             stop=stop,
         )
         announce(told)
-        server.run(sockets=[listener])
+        with _hung_up(server):
+            server.run(sockets=[listener])
 
 
 def _settings(app: ASGIApp) -> uvicorn.Config:
     """How uvicorn runs here; components were measured with just these settings."""
     return uvicorn.Config(
         app,
+        http=ImpatientProtocol,
         ws="websockets-sansio",
         ws_max_size=LARGEST_FRAME,
         ws_per_message_deflate=False,

@@ -64,7 +64,7 @@ class Told(NamedTuple):
 
 def run(
     monkeypatch: pytest.MonkeyPatch, opened: Iterator[Script | None], looks: int
-) -> list[HeadReading]:
+) -> tuple[list[HeadReading], list[bool]]:
     """What the process tells while trackers open in turn; None does not open."""
 
     def open_next(_: HeadDescription) -> Script:
@@ -75,8 +75,9 @@ def run(
 
     monkeypatch.setattr(process, "open_head", open_next)
     told = Told([])
-    process.run_head_process(ANYTHING, told, Stopped(looks))
-    return told.readings
+    lost: list[bool] = []
+    process.run_head_process(ANYTHING, told, Stopped(looks), lost.append)
+    return told.readings, lost
 
 
 def test_a_lost_tracker_is_told_closed_and_opened_again(
@@ -84,7 +85,8 @@ def test_a_lost_tracker_is_told_closed_and_opened_again(
 ) -> None:
     first = Script([HeadReading(1.0, FULL / 2.0, True), None])
     second = Script([HeadReading(2.0, 0.0, False), HeadReading(3.0, 0.0, True)])
-    found = run(monkeypatch, iter([first, None, second]), 8)
+    found, lost = run(monkeypatch, iter([first, None, second]), 8)
+    assert lost == [False, True, False]
     assert [reading.valid for reading in found] == [True, False, False, False, True]
     # Held while it is gone, and until the new one has seen the head.
     assert [r.head_yaw for r in found] == pytest.approx([0.5, 0.5, 0.5, 0.5, 0.0])
@@ -94,7 +96,8 @@ def test_a_lost_tracker_is_told_closed_and_opened_again(
 def test_a_tracker_that_is_never_there_is_told_as_not_valid(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    found = run(monkeypatch, iter([None, None, None]), 3)
+    found, lost = run(monkeypatch, iter([None, None, None]), 3)
+    assert lost == [True, True, True]
     assert len(found) == 3
     assert not any(reading.valid for reading in found)
     assert all(reading.head_yaw == 0.0 for reading in found)

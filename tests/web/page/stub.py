@@ -57,6 +57,19 @@ class Stub:
         self.show_signals = False
         self.mode = "drive"
         self.tables: Json = dict(page_tables())
+        self.is_halted = False
+        self.is_loop_gone = False
+        self.refuses = ""
+        self._to_say: list[Json] = []
+
+    def say(self, message: Json) -> None:
+        """Have a text message sent with the next frame."""
+        self._to_say.append(message)
+
+    def said(self) -> list[Json]:
+        """What is to be sent now."""
+        now, self._to_say = self._to_say, []
+        return now
 
     def hello(self) -> Json:
         """First message of the server."""
@@ -111,6 +124,10 @@ class Stub:
 async def send_frames(stub: Stub, link: WebSocket) -> None:
     """Send frames at their rate; time passes only while the trial runs."""
     while True:
+        while stub.is_halted or stub.is_loop_gone:
+            await asyncio.sleep(1.0 / RATE)
+        for message in stub.said():
+            await link.send_text(json.dumps(message))
         now = time.monotonic()
         stub.seconds += (stub.frame["run_state"] == 1.0) / RATE
         frame = {**stub.frame, "wheel_time": now, "sent_time": now}
@@ -144,11 +161,17 @@ def stub_app(stub: Stub) -> ASGIApp:
 
     async def speak(link: WebSocket) -> None:
         await link.accept()
+        if stub.refuses:
+            refusal = {"type": "error", "text": stub.refuses}
+            await link.send_text(json.dumps(refusal))
+            await link.close(1008)
+            return
         await link.send_text(json.dumps(stub.hello()))
         frames = asyncio.create_task(send_frames(stub, link))
         with contextlib.suppress(WebSocketDisconnect):
             while True:
-                if answer := stub.hear(json.loads(await link.receive_text())):
+                answer = stub.hear(json.loads(await link.receive_text()))
+                if answer and not stub.is_halted:
                     await link.send_text(json.dumps(answer))
         frames.cancel()
         with contextlib.suppress(asyncio.CancelledError, Exception):

@@ -156,6 +156,19 @@ def test_every_fault_of_the_server_is_shown_with_what_can_be_done(
         assert driven.page.evaluate(warns) == bool(fault["text"])
 
 
+def test_a_key_does_nothing_where_nothing_can_go_on(driven: Driven) -> None:
+    driven.enter("paused")
+    driven.stub.frame["fault"] = float(FLAT_TYRE["code"])
+    until(driven.page, f"costeer.lastFrame.fault === {FLAT_TYRE['code']}")
+    before = len(driven.stub.of_type("resume"))
+    driven.press("Enter")
+    driven.page.keyboard.down("ArrowLeft")
+    driven.hear_steer(1.0)  # what was pressed before has been sent as well
+    driven.page.keyboard.up("ArrowLeft")
+    assert len(driven.stub.of_type("resume")) == before
+    driven.stub.frame["fault"] = 0.0
+
+
 def test_every_state_of_the_server_is_shown_and_left_as_it_says(
     driven: Driven,
 ) -> None:
@@ -200,3 +213,71 @@ def test_nothing_is_loaded_from_elsewhere(driven: Driven) -> None:
     own = driven.address.removeprefix("http")
     outside = [u for u in driven.requests if own not in u and not u.startswith("data:")]
     assert outside == []
+
+
+def test_what_the_drive_goes_on_without_stays_on_the_page(driven: Driven) -> None:
+    told = driven.page.locator("#losses")
+    assert told.is_hidden()
+    driven.stub.say({"type": "losses", "texts": ["The <b>network</b> has ended."]})
+    told.wait_for(state="visible")
+    assert told.inner_text() == "The <b>network</b> has ended."
+    driven.stub.say({"type": "losses", "texts": []})
+    told.wait_for(state="hidden")
+
+
+def test_a_server_that_is_halted_is_told_and_left_as_it_answers(
+    driven: Driven,
+) -> None:
+    driven.enter("running")
+    driven.stub.is_halted = True
+    until(driven.page, "costeer.state === 'silent'")
+    assert "The server does not answer" in banner(driven.page)
+    driven.stub.is_halted = False
+    until(driven.page, "costeer.state === 'running'")
+
+
+def test_a_page_that_comes_late_is_told_how_it_stands(browser: Browser) -> None:
+    stub = Stub()
+    gone = next(each for each in stub.tables["faults"] if each["name"] == "loop_gone")
+    stub.tables |= {"run_state": 2, "fault": gone["code"], "losses": ["No network."]}
+    stub.is_loop_gone = True  # no frame comes any more
+    with served(stub) as address:
+        page = browser.new_page(viewport={"width": 480, "height": 270})
+        page.goto(f"{address}/?low&clean")
+        until(page, "window.costeer && costeer.state === 'paused'")
+        assert gone["text"] in banner(page)
+        assert "Enter" not in banner(page)
+        assert page.locator("#losses").inner_text() == "No network."
+        page.close()
+
+
+def test_a_second_page_is_told_why_it_does_not_drive(browser: Browser) -> None:
+    stub = Stub()
+    stub.refuses = "another page drives already; close it"
+    with served(stub) as address:
+        page = browser.new_page(viewport={"width": 480, "height": 270})
+        page.goto(f"{address}/?low&clean")
+        until(page, "window.costeer && costeer.state === 'refused'")
+        assert "another page drives already" in banner(page)
+        stub.refuses = ""
+        until(page, "costeer.state === 'waiting'")  # it is tried again, as it says
+        page.close()
+
+
+def test_the_end_of_the_server_is_told_and_nothing_is_tried_again(
+    browser: Browser,
+) -> None:
+    stub = Stub()
+    with served(stub) as address:
+        page = browser.new_page(viewport={"width": 480, "height": 270})
+        page.goto(f"{address}/?low&clean")
+        until(page, "window.costeer && costeer.state === 'waiting'")
+        stub.say({"type": "farewell"})
+        until(page, "costeer.state === 'over'")
+        stub.say({"type": "losses", "texts": ["seen"]})
+        page.locator("#losses").wait_for(state="visible")
+    page.wait_for_timeout(700)  # the first retry would come after half a second
+    assert page.evaluate("costeer.state") == "over"
+    assert "has ended" in banner(page)
+    assert "again" not in banner(page)
+    page.close()

@@ -5,6 +5,7 @@ from __future__ import annotations
 import multiprocessing
 import signal
 import time
+from collections.abc import Callable
 from typing import Protocol
 
 from costeer.devices.head.calibration import HeadCalibration, calibrated
@@ -35,7 +36,10 @@ class Stop(Protocol):
 
 
 def run_head_process(
-    calibration: HeadCalibration, sink: HeadSink, stopped: Stop
+    calibration: HeadCalibration,
+    sink: HeadSink,
+    stopped: Stop,
+    lose: Callable[[bool], object] = bool,
 ) -> None:
     """Follow the head until told to stop or the parent is gone.
 
@@ -47,21 +51,26 @@ def run_head_process(
         calibration: Which tracker, and how its angle becomes the head's yaw.
         sink: Takes each reading.
         stopped: Set by another process to end this one.
+        lose: Is told whether the tracker itself is lost.
 
     Raises:
         ValueError: If the calibration does not fit the tracker.
         ModuleNotFoundError: If the extra that the tracker needs is not installed.
     """
     if multiprocessing.parent_process() is not None:
-        signal.signal(signal.SIGINT, signal.SIG_IGN)  # the parent says when to stop
+        for name in ("SIGINT", "SIGTERM", "SIGHUP"):  # the parent says when to stop
+            if number := getattr(signal, name, None):
+                signal.signal(number, signal.SIG_IGN)
     last = NOTHING_SEEN
     while _goes_on(stopped):
         try:
             source = open_head(calibration.tracker)
         except HeadLost:
+            lose(True)
             last = _tell_lost(sink, last)
             stopped.wait(RETRY_AFTER)
             continue
+        lose(False)
         last = _follow(source, calibration, sink, stopped, last)
         if _goes_on(stopped):
             last = _tell_lost(sink, last)

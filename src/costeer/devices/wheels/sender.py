@@ -7,10 +7,15 @@ keeps its last force for ever; here it gets zero when nothing came for `EFFECT_L
 from __future__ import annotations
 
 import threading
+import time
 from typing import Protocol
 
 from costeer.devices.wheels import logitech
 from costeer.devices.wheels.interface import EFFECT_LIFE
+
+LATEST = 0.05
+"""A level that was asked for longer ago is not sent any more [s]: who asked for it may
+have been halted since, and the wheel told to let go."""
 
 
 class HidTransport(Protocol):
@@ -46,6 +51,7 @@ class Sender:
         self._transport = transport
         self._changed = threading.Condition()
         self._level: int | None = None
+        self._put_at = 0.0
         self._ended = False
         self._thread = threading.Thread(target=self._run, name="wheel", daemon=True)
         self._thread.start()
@@ -53,7 +59,7 @@ class Sender:
     def put(self, level: int) -> None:
         """Have a level sent; one that was not sent yet is forgotten."""
         with self._changed:
-            self._level = level
+            self._level, self._put_at = level, time.perf_counter()
             self._changed.notify()
 
     def end(self) -> None:
@@ -82,7 +88,8 @@ class Sender:
             self._changed.wait_for(self._is_due, patience)
             if self._ended:
                 return None
-            level = 0 if self._level is None else self._level
+            late = time.perf_counter() - self._put_at > LATEST
+            level = 0 if self._level is None or late else self._level
             self._level = None
             return level
 

@@ -6,7 +6,7 @@ import { now } from "./clock.js";
 import { Controls, isTyping } from "./controls.js";
 import { byId } from "./elements.js";
 import { Columns } from "./frames.js";
-import { Hud, LINK_STATES, toggleFullScreen } from "./hud.js";
+import { Hud, LINK_STATES, refused, toggleFullScreen } from "./hud.js";
 import { StateBuffer } from "./interpolation.js";
 import { FrameCounter, Latency } from "./latency.js";
 import { Panel } from "./panel.js";
@@ -18,6 +18,10 @@ import { Strip } from "./strip.js";
 const HEARTBEAT = 0.09;
 const PING_SPACING = 500;
 const SECOND = 1000;
+/** Silence of an open socket after which the page says so [s]. */
+const SILENCE = 2;
+/** Code with which the server closes a socket that it does not want. */
+const REFUSED = 1008;
 const INDICATOR_KEYS = { KeyZ: 1, Comma: 1, KeyX: -1, Period: -1 };
 
 /** Rows of a table of the server by their number in a frame. */
@@ -42,16 +46,16 @@ export class Drive {
     this.lastFrame = null;
     this.sentText = "";
     this.sentTime = 0;
+    this.heardAt = now();
+    this.lastError = "";
+    this.isOver = false;
     this.panel = null;
     this.greet(hello);
     this.link = new Link(socketAddress(location, query), {
       hello: (message) => this.greet(message),
       frames: (buffer, received) => this.receive(buffer, received),
       text: (message, received) => this.read(message, received),
-      closed: (reason) => {
-        this.enter(LINK_STATES.lost);
-        if (reason) this.hud.note(reason);
-      },
+      closed: (reason, code) => this.closed(reason, code),
     });
     this.enter(LINK_STATES.connecting);
     this.listen();
@@ -72,7 +76,25 @@ export class Drive {
     this.strip.isShown = this.maySeeSignals && !this.isStripClosed;
     this.hud.describeKeys("drive", hello.role);
     if (this.link && hello.role === "experimenter") this.panel = new Panel(hello, this.link);
-    if (this.link) this.enter(hello.run_states[0]);
+    this.hud.losses(hello.losses ?? []);
+    this.lastFrame = null;
+    this.stands = [hello.run_state ?? 0, hello.fault ?? 0];
+    if (this.link) this.enterTrial();
+  }
+
+  /** Show where the trial stands, as the server told it last. */
+  enterTrial() {
+    if (this.isOver) return;
+    const [state, fault] = this.stands;
+    this.enter(this.runStates.get(state), this.faults.get(fault));
+  }
+
+  /** The socket has closed: the server has ended, let this page go, or is lost. */
+  closed(reason, code) {
+    const why = reason || this.lastError;
+    if (this.isOver) this.enter(LINK_STATES.over);
+    else if (code === REFUSED && why) this.enter(refused(why));
+    else this.enter(LINK_STATES.lost);
   }
 
   listen() {
@@ -135,6 +157,7 @@ export class Drive {
   }
 
   receive(buffer, received) {
+    this.heardAt = now();
     for (const frame of this.columns.split(buffer)) {
       this.buffer.push(frame, received);
       this.strip.push(this.columns, frame);
@@ -145,27 +168,45 @@ export class Drive {
     }
     if (!this.lastFrame) return;
     const code = (name) => this.columns.finite(this.lastFrame, name);
-    this.enter(this.runStates.get(code("run_state")), this.faults.get(code("fault")));
+    this.stands = [code("run_state"), code("fault")];
+    this.enterTrial();
   }
 
   /** Read a text message. */
   read(message, received) {
-    if (message.type === "pong") this.latency.pong(message, received);
+    this.heardAt = now();
+    if (this.state === LINK_STATES.silent.name) this.enterTrial();
+    if (message.type === "losses") this.hud.losses(message.texts);
+    else if (message.type === "farewell") this.end();
+    else if (message.type === "pong") this.latency.pong(message, received);
     else if (message.type === "state") this.panel?.state(message);
-    else if (message.type === "error") this.hud.note(message.text, 6);
+    else if (message.type === "error") this.fail(message.text);
     else if (message.type === "marker" && this.hello.role === "experimenter") {
       this.hud.note(message.text);
     }
   }
 
+  fail(text) {
+    this.lastError = text;
+    this.hud.note(text, 6);
+  }
+
+  /** The server ends: nothing is tried again. */
+  end() {
+    this.isOver = true;
+    this.link.isOver = true;
+    this.enter(LINK_STATES.over);
+  }
+
   /** Take on a state: of the trial, from the server's table, or of the link. */
   enter(state, fault) {
     this.state = state.name;
-    this.goesOnBy = state.goes_on_by;
+    this.goesOnBy = fault?.text && !fault.can_resume ? "" : state.goes_on_by;
     this.hud.state(state, fault);
   }
 
   everySecond() {
+    if (this.link.connected && now() - this.heardAt > SILENCE) this.enter(LINK_STATES.silent);
     this.link.sendLatencies(this.latency.takeUnsent());
     const figures = this.figures();
     this.panel?.show(figures);

@@ -8,9 +8,28 @@ import { byId, make } from "./elements.js";
 export const LINK_STATES = {
   connecting: { name: "connecting", title: "Connecting …", lines: [] },
   lost: {
-    name: "lost", title: "Connection lost", lines: ["The trial pauses. Trying again …"], warns: true,
+    name: "lost",
+    title: "Connection lost",
+    lines: ["The trial pauses. Trying again …", "If costeer drive has ended, start it again."],
+    warns: true,
+  },
+  silent: {
+    name: "silent",
+    title: "The server does not answer",
+    lines: ["The trial pauses. Waiting …"],
+    warns: true,
+  },
+  over: {
+    name: "over",
+    title: "costeer drive has ended",
+    lines: ["This page can be closed."],
   },
 };
+
+/** A page that the server has let go, and why. */
+export const refused = (reason) => ({
+  name: "refused", title: "This page does not drive", lines: [reason, "Trying again …"], warns: true,
+});
 
 /** Keys of driving and of replay, for the help. */
 const DRIVING_KEYS = [
@@ -47,6 +66,7 @@ export class Hud {
     this.banner = byId("banner");
     this.notice = byId("notice");
     this.help = byId("help");
+    this.lost = byId("losses");
     this.shown = "";
     this.noticeTimer = 0;
   }
@@ -81,6 +101,12 @@ export class Hud {
   state({ title, lines, warns = false }, fault) {
     if (!title || !fault?.text) this.message(title, lines, warns);
     else this.message(title, fault.can_resume ? [fault.text, ...lines] : [fault.text], true);
+  }
+
+  /** Show what the drive goes on without, as long as it does. */
+  losses(texts) {
+    this.lost.hidden = texts.length === 0;
+    this.lost.replaceChildren(...texts.map((text) => make("li", {}, text)));
   }
 
   /** Show a line at the bottom for a few seconds. */

@@ -20,6 +20,8 @@ export class Link {
     this.sequence = 0;
     this.attempts = 0;
     this.connected = false;
+    /** Whether the server has said that it ends. */
+    this.isOver = false;
     this.worker = new Worker(new URL("./socket_worker.js", import.meta.url), { type: "module" });
     this.worker.onmessage = ({ data }) => this.receive(data);
     this.connect();
@@ -46,6 +48,7 @@ export class Link {
   lost({ code, reason }) {
     this.connected = false;
     this.handlers.closed(reason, code);
+    if (this.isOver) return;
     const wait = RETRY[Math.min(this.attempts++, RETRY.length - 1)];
     setTimeout(() => this.connect(), wait);
   }
