@@ -89,12 +89,16 @@ def _fault(
     if checksum is not None and checksum != str(batch_checksum(batch)).encode():
         return "its checksum does not fit its numbers"
     if METADATA_KEY in (batch.schema.metadata or {}):
-        return _time_fault(batch, before)
+        return _time_fault(batch, before, even=checksum is None)
     return ""
 
 
-def _time_fault(batch: pa.RecordBatch, before: list[pa.RecordBatch]) -> str:
-    """Whether the rows of a trial follow each other in even steps."""
+def _time_fault(batch: pa.RecordBatch, before: list[pa.RecordBatch], even: bool) -> str:
+    """What is wrong with the times of a trial's rows; empty if nothing.
+
+    They go up; in even steps too, unless a checksum says that the numbers are those
+    that were written: a drive leaves out what could not be recorded, and marks it.
+    """
     driven = [each for each in before if each.num_rows][-1:]
     parts = [_time(each) for each in (*driven, batch)]
     time = np.concatenate(parts)
@@ -104,7 +108,8 @@ def _time_fault(batch: pa.RecordBatch, before: list[pa.RecordBatch]) -> str:
     if steps.size == 0:
         return ""
     step = np.median(np.diff(parts[0])) if driven and len(parts[0]) > 1 else steps[0]
-    wrong = np.flatnonzero(~(np.abs(steps - step) <= _STEP_TOLERANCE * step))
+    uneven = ~(np.abs(steps - step) <= _STEP_TOLERANCE * step)
+    wrong = np.flatnonzero(uneven if even else ~(steps > 0.0))
     if step <= 0.0 or wrong.size:
         row = int(wrong[0]) if wrong.size else 0
         return f"after {time[row]:.6g} s follows {time[row + 1]:.6g} s"
