@@ -28,8 +28,14 @@ SEED = 1
 WANTED = 0.95
 
 TESTS = {
-    "runtime/guard.py": ["tests/runtime/test_guard.py"],
-    "runtime/watchdog.py": ["tests/runtime/test_watchdog.py"],
+    "runtime/guard.py": [
+        "tests/runtime/test_guard.py",
+        "tests/runtime/test_promises.py",
+    ],
+    "runtime/watchdog.py": [
+        "tests/runtime/test_watchdog.py",
+        "tests/runtime/test_promises.py",
+    ],
     "web/security.py": ["tests/web/test_security.py"],
     "controller/actuation.py": ["tests/controller/test_actuation.py", "tests/paper"],
     "controller/consistency.py": [

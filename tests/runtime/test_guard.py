@@ -104,3 +104,12 @@ def test_torque_that_is_asked_to_turn_round_does_so_at_its_rate() -> None:
     steps = [before - after for before, after in itertools.pairwise(torques)]
     assert max(steps) == pytest.approx(PARAMETERS.torque_rate_limit * DT)
     assert torques[-1] == -6.0
+
+
+@pytest.mark.parametrize("wanted", [100.0, -100.0])
+def test_what_is_over_the_limit_is_cut_before_it_fades_in(wanted: float) -> None:
+    # Half of the limit at half of the fade, not half of whatever was asked for.
+    state = GuardState()
+    for _ in range(round(PARAMETERS.fade_in / 2.0 / DT)):
+        state, torque = step(PARAMETERS, state, wanted, True, False, DT)
+    assert torque == pytest.approx(math.copysign(4.0, wanted), abs=0.01)
