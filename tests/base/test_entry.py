@@ -216,6 +216,7 @@ if __name__ == "__main__":
 """
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("order", [1, -1])
 def test_one_file_under_two_names_has_machine_code_for_each(
     tmp_path: Path, order: int

@@ -152,6 +152,7 @@ def test_the_method_closes_the_loop_of_a_person() -> None:
     assert rows[-1]["steering_wheel_angle"] > 0.05  # the hands turned the wheel
 
 
+@pytest.mark.slow
 def test_object_name_and_place_of_a_method_give_the_same_bytes(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:

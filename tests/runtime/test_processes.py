@@ -185,6 +185,7 @@ def test_nobody_drives_on_when_the_watchdog_is_gone(begin: Begin) -> None:
         drive.send("resume")
 
 
+@pytest.mark.slow
 @needs_posix
 def test_lost_network_is_told_as_long_as_it_lasts_and_marked_in_the_record(
     begin: Begin, tmp_path: Path
@@ -204,6 +205,7 @@ def test_lost_network_is_told_as_long_as_it_lasts_and_marked_in_the_record(
     assert "no lane change is read" in told(lost)
 
 
+@pytest.mark.slow
 @needs_posix
 @pytest.mark.parametrize("how", ["SIGTERM", "SIGHUP"])
 def test_drive_ends_although_its_helpers_were_ended_first(

@@ -74,6 +74,7 @@ def test_a_trial_lasts_as_long_as_the_driver_is_looked_at() -> None:
         assert time[-1] >= setup.trigger_times[0] + 8.0 + 4.0
 
 
+@pytest.mark.slow
 def test_every_driver_overrules_both_systems() -> None:
     for found in trio().values():
         assert (found.overruled == 1.0).all()
