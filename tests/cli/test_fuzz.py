@@ -112,3 +112,27 @@ def test_a_damaged_file_ends_in_one_line(
         print(
             f"\n{kind}: {number} damaged files, {refused} refused, none broke costeer"
         )
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ["analyse", "/dev/zero"],
+        ["evaluate", "/dev/zero"],
+        ["export", "/dev/zero", "--to", "mcap", "--out", "x.mcap"],
+        ["replay", "/dev/zero"],
+        ["drivers", "--fit", "/dev/zero"],
+        ["parameters", "--parameters", "/dev/zero"],
+        ["analyse", "table.csv", "--map", "/dev/zero"],
+        ["simulate", "--length", "100", "--out", "t.parquet", "--weights", "/dev/zero"],
+    ],
+)
+def test_what_never_ends_is_not_read(
+    words: list[str],
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert main(words) == 2
+    assert "/dev/zero is a device or a pipe" in capsys.readouterr().err

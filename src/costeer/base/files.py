@@ -47,7 +47,11 @@ def _synchronise(path: Path) -> None:
         os.close(descriptor)
 
 
-def read_whole(path: Path, most: int = 4_000_000_000) -> bytes:
+MOST = 4_000_000_000
+"""Largest file that is read into memory [bytes]."""
+
+
+def read_whole(path: Path, most: int = MOST) -> bytes:
     """The content of a file, refused if reading it might never end.
 
     Args:

@@ -73,10 +73,11 @@ def private_folder(root: Path, name: str) -> Path:
     folder = root / name
     try:
         folder.mkdir(mode=0o700, parents=True, exist_ok=True)
-        _forget_old(root, folder)
         reason = _open_to_others(root) or _open_to_others(folder)
         if not (reason or os.access(folder, os.W_OK)):
             reason = "it cannot be written"
+        if not reason:
+            _forget_old(root, folder)
     except OSError as error:
         reason = str(error.strerror)
     return folder if not reason else _passing_folder(root, reason)

@@ -85,7 +85,9 @@ def read_lab(path: Path | None) -> Lab:
 def _fields(path: Path) -> dict[str, Any]:  # Any: as YAML gives it back
     import yaml
 
-    content = path.read_bytes()
+    from costeer.base.files import read_whole
+
+    content = read_whole(path, 1_000_000)
     try:
         said = yaml.safe_load(content)
     except Exception as error:  # whatever the parser makes of what is no YAML

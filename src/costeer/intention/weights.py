@@ -14,6 +14,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from costeer.base.files import read_whole
 from costeer.intention.arrays import (
     Form,
     arrays_hash,
@@ -93,7 +94,7 @@ def load_weights(path: Path | None = None) -> IntentionNetwork:
     if path is None:
         content = resources.files(__package__).joinpath("data", _SHIPPED).read_bytes()
         return _parsed(content, f"the shipped {_SHIPPED}")
-    return _parsed(path.read_bytes(), str(path))
+    return _parsed(read_whole(path), str(path))
 
 
 def _stored(weights: NetworkWeights) -> dict[str, NDArray[Any]]:

@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import gzip
+import io
 import zlib
 from pathlib import Path
+
+from costeer.base.files import MOST, read_whole
 
 PARQUET, STREAM, ARROW_FILE, TEXT = "parquet", "arrow stream", "arrow file", "text"
 
@@ -40,16 +43,20 @@ def unpacked(path: Path) -> bytes:
         ValueError: If it is a damaged archive.
         OSError: If it cannot be read.
     """
-    content = path.read_bytes()
+    content = read_whole(path)
     if not content.startswith(_GZIP):
         return content
     try:
-        return gzip.decompress(content)
+        with gzip.open(io.BytesIO(content)) as packed:
+            content = packed.read(MOST + 1)
     except (OSError, EOFError, zlib.error) as error:
         raise ValueError(
             f"{path} is no CSV table: gzipped, and damaged or cut short ({error}); "
             "copy it anew"
         ) from error
+    if len(content) > MOST:
+        raise ValueError(f"{path} unpacks to more than {MOST / 1e9:g} GB; cut it")
+    return content
 
 
 def kind_of(content: bytes, path: Path) -> str:

@@ -14,7 +14,7 @@ import pyarrow as pa
 import pyarrow.ipc
 import pyarrow.parquet as pq
 
-from costeer.base.files import replacing
+from costeer.base.files import read_whole, replacing
 from costeer.records.arrow import (
     METADATA_KEY,
     described,
@@ -141,7 +141,7 @@ def read_record(
         for name in names or ()
         if name not in COLUMN_NAMES and not name.startswith(METHOD_PREFIX)
     )
-    return _record_in(_opened(Path(path).read_bytes(), path), path, names)
+    return _record_in(_opened(read_whole(Path(path)), path), path, names)
 
 
 def read_recording(path: str | os.PathLike[str]) -> TrialRecord:
@@ -250,7 +250,7 @@ def whole_batches(path: Path) -> Stream:
         ValueError: If there is none.
         OSError: If it cannot be read.
     """
-    return _with_rows(sound_batches(path.read_bytes()), path)
+    return _with_rows(sound_batches(read_whole(path)), path)
 
 
 def _with_rows(stream: Stream, path: str | os.PathLike[str]) -> Stream:

@@ -19,7 +19,7 @@ from typing import Any, NamedTuple
 import yaml
 from filelock import FileLock, Timeout
 
-from costeer.base.files import prepare_folder, write_text
+from costeer.base.files import prepare_folder, read_whole, write_text
 from costeer.study.changes import refusal
 
 STUDY_FILE = "study.yaml"
@@ -83,7 +83,7 @@ def read_study(path: Path) -> StudyFolder:
 
 
 def _yaml_mapping(file: Path) -> dict[str, Any]:
-    text = file.read_bytes()
+    text = read_whole(file)
     try:
         size = _size(yaml.compose(text, yaml.SafeLoader), {})
         content = yaml.safe_load(text) if size <= _LARGEST else None

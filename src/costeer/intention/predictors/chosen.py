@@ -134,7 +134,7 @@ def _file_hash(path: Path | None) -> str:
     """Hash of a file of fitted numbers; of the shipped one its place says enough."""
     if path is None:
         return "shipped"
-    return hashlib.sha256(path.read_bytes()).hexdigest()
+    return hashlib.sha256(read_whole(path)).hexdigest()
 
 
 def _last_of(found: Predictor) -> Judge:

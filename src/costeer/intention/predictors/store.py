@@ -16,6 +16,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from costeer.base.files import read_whole
 from costeer.intention import gru as network
 from costeer.intention.arrays import (
     Arrays,
@@ -112,7 +113,7 @@ def load_baselines(path: Path | None = None) -> dict[str, Baseline]:
     if path is None:
         folder = resources.files("costeer.intention").joinpath("data")
         return _parsed(folder.joinpath(SHIPPED).read_bytes(), f"the shipped {SHIPPED}")
-    return _parsed(path.read_bytes(), str(path))
+    return _parsed(read_whole(path), str(path))
 
 
 def _stored(baselines: Mapping[str, Baseline]) -> Arrays:
