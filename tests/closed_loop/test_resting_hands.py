@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from typing import Any
 
@@ -72,14 +73,8 @@ def start(
 
 
 def ten_seconds(
-    car: str,
-    speed: float,
-    arms: ArmParameters,
-    offset: float,
-    yaw: float,
-    gain: float = 0.0,
+    driven: LoopParameters[Any], offset: float, yaw: float, gain: float = 0.0
 ) -> Rows:
-    driven = parameters(car, speed, arms)
     begin = start(driven, offset, math.radians(yaw), gain)
     rows = np.empty((600, len(ROW_COLUMNS)))
     advance = begun(IBHS, driven, idle_network(), "numba", begin)
@@ -98,10 +93,53 @@ def ten_seconds(
 def test_from_anywhere_on_the_road_the_gain_is_back_and_the_car_in_a_lane(
     car: str, arms: ArmParameters, speed: float, offset: float, yaw: float, gain: float
 ) -> None:
-    rows = ten_seconds(car, speed, arms, offset, yaw, gain)
+    rows = ten_seconds(parameters(car, speed, arms), offset, yaw, gain)
     assert (rows[round(3.0 / DT) :, GAIN] > 0.95).all()
-    apart = np.abs(rows[round(8.0 / DT) :, PLACE, None] - CENTRES).min(axis=1)
-    assert apart.max() < 0.3
+    assert apart_after_8_s(rows) < 0.3
+
+
+def apart_after_8_s(rows: Rows) -> float:
+    """Farthest from a lane's centre then [m]."""
+    return np.abs(rows[round(8.0 / DT) :, PLACE, None] - CENTRES).min(axis=1).max()
+
+
+def time_back(rows: Rows) -> float:
+    """From when on the gain stays above 0.95 [s]."""
+    low = np.flatnonzero(rows[:, GAIN] <= 0.95)
+    return (low[-1] + 1) * DT if low.size else 0.0
+
+
+def test_with_a_constant_gain_resting_hands_would_leave_the_lane() -> None:
+    driven = parameters("large", 110.0, RESTING)
+    assert apart_after_8_s(ten_seconds(driven, -1.6, -4.0)) < 0.3
+    place = "guidance.steering_gain_speed"
+    constant = with_value_at(driven.controller, place, 1000.0)
+    driven = driven._replace(controller=constant)
+    assert apart_after_8_s(ten_seconds(driven, -1.6, -4.0)) > 0.6
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("car", CARS)
+def test_starts_all_over_the_road_are_told(car: str) -> None:
+    """`pytest tests/closed_loop/test_resting_hands.py -m slow -rP` prints them."""
+    found = []
+    for speed, arms in itertools.product((50.0, 70.0, 90.0, 110.0), (NONE, RESTING)):
+        driven = parameters(car, speed, arms)
+        method = with_value_at(driven.controller, "hands.inertia", 0.0)
+        deaf = driven._replace(controller=with_value_at(method, "hands.damping", 0.0))
+        for offset in np.linspace(-5.1, 1.6, 10):
+            for yaw in (-4.0, -2.0, 0.0, 2.0, 4.0):
+                rows = ten_seconds(driven, offset, yaw)
+                other = time_back(ten_seconds(deaf, offset, yaw))
+                found.append((time_back(rows), apart_after_8_s(rows), other))
+    back, apart, deaf_back = np.max(found, axis=0)
+    print(
+        f"{car}: {len(found)} starts, gain back after {back:.2f} s, {apart:.2f} m from "
+        f"a lane's centre; were relaxed arms not known, after {deaf_back:.2f} s"
+    )
+    assert back < 3.0
+    assert apart < 0.3
+    assert deaf_back > 3.0  # so it is needed
 
 
 @pytest.mark.parametrize(
