@@ -14,7 +14,7 @@ from costeer.loop.trial import simulate_trial
 from costeer.methods.ibhs import IBHS
 from costeer.methods.interface import method_sources
 from costeer.methods.registry import method_named
-from tests.methods.rivals import FILE, example
+from tests.methods.rivals import FILE, Memory, example, rival, torque
 
 
 def installed(folder: Path, package: str, points: str) -> None:
@@ -167,3 +167,24 @@ def test_a_torque_that_the_motor_cannot_give_is_contained_and_counted(
         record.metadata["torque_faults"] == (record.columns["torque_fault"] > 0).sum()
     )
     assert bool((record.columns["steering_wheel_angle"] < -0.1).any()) is moved
+
+
+def test_a_method_that_does_not_assist_moves_no_wheel_whatever_it_asks_for() -> None:
+    # At the first step it asks for nothing, so that nothing is refused before.
+    late = rival(
+        lambda parameters, state, measured, *_: (
+            Memory(state.last + 1.0),
+            torque(2.0 * (state.last > 5.0)),
+        )
+    )._replace(assists=False)
+    setup = TrialSetup(
+        condition="strong-normal",
+        method=late,
+        driver="hands-off",
+        intention="off",
+        length=100.0,
+    )
+    record = simulate_trial(setup, "python")
+    assert not record.columns["steering_wheel_angle"].any()
+    assert record.columns["torque_fault"][10] == 2.0
+    assert record.metadata["torque_faults"] == len(record.columns["time"]) - 6
