@@ -67,6 +67,7 @@ def test_a_false_trigger_comes_once_to_a_driver_who_has_nothing_to_overtake() ->
     assert found("weak-rapid", NO_TRIGGER).num_events == 4
 
 
+@pytest.mark.slow
 def test_in_manual_driving_neither_a_trigger_nor_its_absence_costs_anything() -> None:
     assert alike(found("manual", FALSE_TRIGGER), found("manual", NO_TRIGGER))
     assert alike(found("manual", MISSED_CROSSING), found("manual", ANNOUNCED_CROSSING))

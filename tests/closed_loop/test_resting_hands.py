@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from costeer.base.described import with_value_at
@@ -82,6 +82,7 @@ def ten_seconds(
     return rows[:count]
 
 
+@settings(max_examples=15)
 @pytest.mark.parametrize("arms", [NONE, RESTING], ids=["none", "resting"])
 @pytest.mark.parametrize("car", CARS)
 @given(

@@ -114,8 +114,8 @@ def test_each_parameter_is_listed_under_a_name_of_its_own_that_sets_it() -> None
     assert "controller.road.length" not in listed
     assert listed["car.mass"].value == 2000.0
     assert listed["car.mass"].allowed.high == 150_000.0  # of the usual 1500 kg
-    for each in listed.values():
-        loop_parameters(SETUP._replace(parameters=((each.name, each.value),)))
+    every = tuple((each.name, each.value) for each in listed.values())
+    assert loop_parameters(SETUP._replace(parameters=every)) == heavy
 
 
 @pytest.mark.parametrize(

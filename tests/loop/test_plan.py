@@ -94,6 +94,7 @@ def changes(participant: int, follows_plan: float) -> Changes:
     return found
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("participant", WHO)
 def test_every_change_of_a_following_system_lasts_as_the_driver_planned(
     participant: int,
@@ -142,6 +143,7 @@ def test_otherwise_changes_last_as_the_method_says(participant: int) -> None:
     assert durations == pytest.approx([METHODS_DURATION] * len(durations), rel=1e-12)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("participant", WHO)
 def test_otherwise_a_change_begins_at_the_horizon(participant: int) -> None:
     # The first one: 3 s before the driver's own crossing, half the duration after

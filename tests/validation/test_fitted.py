@@ -61,6 +61,7 @@ def test_the_same_check_gives_the_same_numbers_with_any_number_of_threads() -> N
     assert one == two
 
 
+@pytest.mark.slow
 def test_progress_counts_every_trial() -> None:
     done: list[int] = []
     check_fit(recorded(1), fitted(), 1, 3, done.append)

@@ -81,6 +81,7 @@ def test_every_driver_overrules_both_systems() -> None:
         assert (found.time_to_overrule < 4.0).all()
 
 
+@pytest.mark.slow
 def test_the_real_system_fades_out_and_the_other_does_not() -> None:
     for duration in (4.0, 6.0, 8.0):
         real, other = (trio()[duration, system] for system in SYSTEMS)
