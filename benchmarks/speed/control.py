@@ -11,9 +11,10 @@ from costeer.controller.signals import Request
 from costeer.intention.gru import hidden_size, random_weights
 from costeer.loop import step as loop
 from costeer.loop.parameters import DT, LoopParameters
+from costeer.loop.rows import rules_of
 from costeer.loop.trial import shipped_network
 from costeer.methods.ibhs import IBHS
-from costeer.methods.interface import rule_of, usual_parameters
+from costeer.methods.interface import usual_parameters
 from costeer.plant.road import cruising_lane
 
 CONTROL_STEP_BUDGET = 20.0
@@ -25,7 +26,7 @@ def measure_control_step(effort: Effort) -> Outcome:
     parameters = LoopParameters(controller=usual_parameters(IBHS))
     lane = cruising_lane(parameters.road)
     memory = packed_controller(parameters.controller, lane)
-    state = loop.initial_state(rule_of(IBHS), parameters)
+    state = loop.initial_state(rules_of(IBHS), parameters)
     pack(memory.given, ControlInput(loop.sense(parameters, state), Request()))
     control_step(*memory, DT)
     figures = percentiles(

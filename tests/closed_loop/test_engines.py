@@ -16,17 +16,16 @@ import pytest
 from numpy.typing import NDArray
 
 from costeer.controller.step import ControllerParameters
-from costeer.drivers.driver import DriverNoise
+from costeer.drivers.interface import DriverNoise
 from costeer.loop.jax_rollout import Fixed, float64, jax_rollouts, trace
 from costeer.loop.noise import driver_noise
 from costeer.loop.parameters import LoopParameters
 from costeer.loop.rollout import rollout
-from costeer.loop.rows import writer_of
+from costeer.loop.rows import rules_of, writer_of
 from costeer.loop.scenario import TrialSetup, loop_parameters
 from costeer.loop.tick import INTENTION_NETWORK, INTENTION_SCRIPTED, Script
 from costeer.loop.trial import idle_network
 from costeer.methods.ibhs import IBHS
-from costeer.methods.interface import rule_of
 from costeer.records.row import ROW_COLUMNS
 
 ENGINES = ("python", "numba", "jax")
@@ -193,7 +192,7 @@ def test_a_gradient_through_the_loop_equals_a_finite_difference() -> None:
         guidance = parameters.controller.guidance._replace(lateral_error_gain=gain)
         controller = parameters.controller._replace(guidance=guidance)
         changed = parameters._replace(controller=controller)
-        fixed = Fixed(rule_of(IBHS), writer_of(IBHS).values, 8, INTENTION_SCRIPTED)
+        fixed = Fixed(rules_of(IBHS), writer_of(IBHS).values, 8, INTENTION_SCRIPTED)
         _, filled = trace(changed, 3.0, np.array([]), drawn, fixed)
         return filled[-1, ROW_COLUMNS.index("lateral_position")]
 

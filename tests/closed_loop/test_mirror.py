@@ -13,7 +13,7 @@ import pytest
 from numpy.typing import NDArray
 
 from costeer.controller.step import ControllerParameters
-from costeer.drivers.driver import DriverNoise
+from costeer.drivers.interface import DriverNoise
 from costeer.loop.noise import driver_noise
 from costeer.loop.parameters import LoopParameters
 from costeer.loop.rollout import rollout

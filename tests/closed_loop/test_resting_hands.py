@@ -17,15 +17,15 @@ from costeer.controller.step import ControllerState
 from costeer.drivers.arm import ArmParameters
 from costeer.loop.parameters import DT, LoopParameters
 from costeer.loop.rollout import begun
+from costeer.loop.rows import rules_of
 from costeer.loop.scenario import TrialSetup, loop_parameters
 from costeer.loop.step import LoopState, initial_state
 from costeer.loop.tick import INTENTION_OFF, Script
 from costeer.loop.trial import idle_network
-from costeer.methods.checked import standing_start
 from costeer.methods.ibhs import IBHS
-from costeer.methods.interface import rule_of
 from costeer.plant.parameters import CARS
 from costeer.records.row import ROW_COLUMNS
+from costeer.sensing.measurement import standing_start
 from costeer.validation.driver_loop import quiet
 
 GAIN = ROW_COLUMNS.index("haptic_gain")
@@ -66,7 +66,7 @@ def faded(state: ControllerState, gain: float) -> ControllerState:
 def start(
     given: LoopParameters[Any], offset: float, yaw: float, gain: float
 ) -> LoopState[ControllerState]:
-    state = initial_state(rule_of(IBHS), given)
+    state = initial_state(rules_of(IBHS), given)
     car = state.world.vehicle._replace(lateral_position=offset, yaw_angle=yaw)
     control = state.control._replace(method=faded(state.control.method, gain))
     return state._replace(world=state.world._replace(vehicle=car), control=control)
@@ -155,7 +155,7 @@ def test_hands_that_only_weigh_on_the_wheel_do_not_keep_the_gain_at_zero(
     method = with_value_at(
         driven.controller, "consistency.hands_on_threshold", threshold
     )
-    state = faded(initial_state(rule_of(IBHS), driven).control.method, 0.0)
+    state = faded(initial_state(rules_of(IBHS), driven).control.method, 0.0)
     astray = standing_start(driven.road)._replace(
         lateral_position=-92.0, yaw_rate=0.01, driver_torque=-0.015
     )

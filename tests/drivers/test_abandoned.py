@@ -25,7 +25,8 @@ from costeer.drivers.decision import (
     Draws,
     Surroundings,
 )
-from costeer.drivers.driver import DriverNoise, DriverParameters, Knowledge
+from costeer.drivers.driver import DriverParameters
+from costeer.drivers.interface import DriverNoise, Knowledge
 from costeer.plant.parameters import CarParameters, ColumnParameters, RoadParameters
 from costeer.plant.road import lane_centre
 from tests.drivers.samples import DT, LEFT, NO_LEADER, RIGHT, SPEED, driving, leader
@@ -231,7 +232,7 @@ def test_the_path_leads_back_to_the_lane_it_came_from(
     quiet = DriverNoise(*([0.0] * len(DriverNoise._fields)))
     knowledge = Knowledge(CarParameters(), ColumnParameters(), ROAD)
     car = driving(100.0, -0.6 if phase == CHANGING else -2.9, yaw_angle=0.01)
-    before = driver.initial_state(-9.0)
+    before = driver.initial_state(DriverParameters(), -9.0)
     around = Surroundings(car, leader(120.0, SPEED - 3.0), SPEED)
     after = decision.step(FICKLE, on_the_way(phase, 2.0), around, draws(0.5), DT)
     aimed = driver.aim(DriverParameters(), before, knowledge, car, after, quiet, DT)

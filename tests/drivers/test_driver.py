@@ -8,14 +8,8 @@ import pytest
 from costeer.base.bezier import path_point
 from costeer.drivers import driver
 from costeer.drivers.decision import CHANGING, CRUISING, PREPARING
-from costeer.drivers.driver import (
-    Action,
-    DriverNoise,
-    DriverParameters,
-    DriverState,
-    Knowledge,
-    Perception,
-)
+from costeer.drivers.driver import DriverParameters, DriverState
+from costeer.drivers.interface import Action, DriverNoise, Knowledge, Perception
 from costeer.plant.parameters import CarParameters, ColumnParameters, RoadParameters
 from costeer.plant.traffic import LeaderState
 from tests.drivers.samples import DT, NO_LEADER, RIGHT, SPEED, driving, leader
@@ -36,7 +30,7 @@ def act(
 ) -> tuple[DriverState, Action]:
     """One step of the median driver without noise."""
     perception = Perception(driving(position, lateral_position), ahead, guidance)
-    before = state or driver.initial_state(0.0)
+    before = state or driver.initial_state(PARAMETERS, 0.0)
     return driver.act(PARAMETERS, before, KNOWLEDGE, perception, QUIET, DT)
 
 
@@ -85,7 +79,7 @@ def test_steering_starts_a_path_to_the_overtaking_lane() -> None:
 def test_the_wish_to_be_faster_makes_a_leader_worth_overtaking() -> None:
     # 0.9 m/s slower is not worth it, 1.1 m/s is: the wander of the wanted speed counts.
     close = leader(25.0, SPEED - 0.9)
-    at_rest = driver.initial_state(0.0)
+    at_rest = driver.initial_state(PARAMETERS, 0.0)
     hurried = at_rest._replace(
         longitudinal=at_rest.longitudinal._replace(speed_wander=0.2)
     )
@@ -95,7 +89,7 @@ def test_the_wish_to_be_faster_makes_a_leader_worth_overtaking() -> None:
 
 def test_a_driver_speeds_up_from_the_decision_on() -> None:
     # The leader in the other lane is far from where it would slow anybody down.
-    deciding = driver.initial_state(0.0)
+    deciding = driver.initial_state(PARAMETERS, 0.0)
     far = leader(300.0, SPEED - 3.0)
     cruising, preparing = (
         deciding._replace(
@@ -120,7 +114,7 @@ def test_guidance_reaches_the_arms_with_the_lag_of_feeling() -> None:
 
 
 def test_guidance_against_the_intended_angle_makes_the_arms_tense() -> None:
-    state = driver.initial_state(0.0)
+    state = driver.initial_state(PARAMETERS, 0.0)
     for _ in range(60):  # left of the aim, pushed further left
         state, action = act(state, lateral_position=0.5, guidance=2.0)
     assert action.arm.stiffening > 2.0
@@ -137,7 +131,10 @@ def signed(action: Action) -> list[float]:
 
 def test_a_mirrored_world_gets_the_mirrored_action() -> None:
     # Right-hand traffic: lanes change places, positions mirror at the line between.
-    here, there = driver.initial_state(0.0), driver.initial_state(-3.5)
+    here, there = (
+        driver.initial_state(PARAMETERS, 0.0),
+        driver.initial_state(PARAMETERS, -3.5),
+    )
     right_hand = KNOWLEDGE._replace(road=RoadParameters(overtaking_side=1.0))
     noise = QUIET._replace(near=0.3, motor=-1.1, wander=0.7, head_drift=0.9)
     sides = ("near", "motor", "wander", "head_drift")

@@ -10,14 +10,15 @@ from numpy.typing import NDArray
 
 from costeer.controller.signals import Request
 from costeer.controller.step import ControllerParameters, ControllerState
-from costeer.drivers.driver import DriverNoise, DriverParameters
+from costeer.drivers.driver import DriverParameters
+from costeer.drivers.interface import DriverNoise
 from costeer.drivers.population import hands_off, participant_driver
 from costeer.loop import step as loop
 from costeer.loop.noise import driver_noise
 from costeer.loop.parameters import DT, LoopParameters, StartParameters
+from costeer.loop.rows import rules_of
 from costeer.loop.step import LoopState
 from costeer.methods.ibhs import IBHS
-from costeer.methods.interface import rule_of
 from costeer.plant import world
 from costeer.plant.parameters import CarParameters, ColumnParameters
 from costeer.plant.steering import aligning_torque
@@ -26,7 +27,7 @@ from costeer.plant.world import Inputs, WorldState
 
 SMOOTH = ColumnParameters(friction=0.0)
 SPEED = 20.0
-RULE = rule_of(IBHS)
+RULES = rules_of(IBHS)
 
 
 class Moment(NamedTuple):
@@ -66,13 +67,13 @@ def run(
         return after
 
     monkeypatch.setattr(world, "step", listening)
-    state = loop.initial_state(RULE, parameters)
+    state = loop.initial_state(RULES, parameters)
     states, moments = [state], []
     for k, draws in enumerate(driver_noise(900_001, 3, "pilot", num_steps)):
         noise = DriverNoise(*draws.tolist())
         measurement = loop.sense(parameters, state)
         asked = Request(requested=60 <= k < 66)
-        state, _ = loop.step(RULE, parameters, state, measurement, asked, noise)
+        state, _ = loop.step(RULES, parameters, state, measurement, asked, noise)
         states.append(state)
         moments.append(list(heard))
         heard.clear()
@@ -117,7 +118,7 @@ def balances(
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Hand torque that the column felt, and that the driver reports [N·m]."""
     felt = [torque_on_the_column(column, moments) for moments in found.moments]
-    told = [state.driver.arm.torque for state in found.states[1:]]
+    told = [state.arm.torque for state in found.states[1:]]
     return np.array(felt), np.array(told)
 
 
@@ -168,7 +169,7 @@ def test_without_hands_no_torque_and_the_columns_own_motion(
 ) -> None:
     parameters = wild(ColumnParameters())._replace(driver=hands_off(SPEED))
     found = run(parameters, 120, monkeypatch)
-    assert {state.driver.arm.torque for state in found.states} == {0.0}
+    assert {state.arm.torque for state in found.states} == {0.0}
     assert {m.inputs.driver_torque for ms in found.moments for m in ms} == {0.0}
     for alone, moments, after in zip(
         found.states, found.moments, found.states[1:], strict=False

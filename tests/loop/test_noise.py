@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from costeer.drivers.driver import NORMAL_DRAWS, DriverNoise
+from costeer.drivers.interface import NORMAL_DRAWS, DriverNoise
 from costeer.loop.noise import driver_noise
 
 NOISE = driver_noise(1, 2, "manual", 20_000)

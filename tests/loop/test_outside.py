@@ -14,8 +14,8 @@ from costeer.loop.outside import Verdicts
 from costeer.loop.scenario import TrialSetup
 from costeer.loop.tick import intention_sample
 from costeer.loop.trial import simulate_trial
-from costeer.methods.checked import standing_start
 from costeer.plant.parameters import RoadParameters
+from costeer.sensing.measurement import standing_start
 
 SETUP = TrialSetup(condition="strong-normal", participant=2, length=400.0)
 

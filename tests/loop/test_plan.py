@@ -11,17 +11,17 @@ from numpy.typing import NDArray
 
 from costeer.base.bezier import Quintic, path_point
 from costeer.controller.step import ControllerParameters
-from costeer.drivers.driver import DriverNoise
+from costeer.drivers.interface import DriverNoise
 from costeer.loop.noise import driver_noise
 from costeer.loop.parameters import DT, LoopParameters
+from costeer.loop.rows import rules_of
 from costeer.loop.scenario import PILOT_SEED, TrialSetup, loop_parameters
 from costeer.loop.step import initial_state
 from costeer.loop.tick import INTENTION_SCRIPTED, Script, tick
 from costeer.loop.trial import idle_network
 from costeer.methods.ibhs import IBHS
-from costeer.methods.interface import rule_of
 
-RULE = rule_of(IBHS)
+RULES = rules_of(IBHS)
 METHODS_DURATION = 5.0
 WHO = (1, pytest.param(2, marks=pytest.mark.slow))
 
@@ -75,13 +75,13 @@ def parameters_of(
 def changes(participant: int, follows_plan: float) -> Changes:
     """Half a minute: over to the other lane and back."""
     parameters = parameters_of(participant, follows_plan)
-    state = initial_state(RULE, parameters)
+    state = initial_state(RULES, parameters)
     script = Script(INTENTION_SCRIPTED, 3.0, np.zeros(0))
     network = idle_network()
     found = Changes([], [], [])
     for draws in driver_noise(PILOT_SEED, participant, "pilot", round(30.0 / DT)):
         before, noise = state, DriverNoise(*draws.tolist())
-        state, sample = tick(RULE, parameters, state, script, network, noise)
+        state, sample = tick(RULES, parameters, state, script, network, noise)
         own, system = state.driver.tracking.path, state.control.method.trajectory.path
         speed = sample.measurement.longitudinal_velocity
         if own != before.driver.tracking.path:

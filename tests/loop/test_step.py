@@ -10,22 +10,28 @@ import pytest
 
 from costeer.controller.signals import Request
 from costeer.controller.step import ControllerParameters, ControllerState
-from costeer.drivers.decision import CHANGING, PREPARING
-from costeer.drivers.driver import DriverNoise, DriverParameters
+from costeer.drivers.decision import (
+    CHANGING,
+    PREPARING,
+    DecisionState,
+    time_to_crossing,
+)
+from costeer.drivers.driver import DriverParameters
+from costeer.drivers.interface import DriverNoise, Plan
 from costeer.drivers.population import hands_off
 from costeer.loop.half_step import Sample
 from costeer.loop.parameters import DT, LoopParameters, StartParameters
+from costeer.loop.rows import rules_of
 from costeer.loop.step import LoopState, initial_state, planned_to_cross, sense, step
 from costeer.loop.tick import REQUEST_DURATION, requested, scripted_probability
 from costeer.methods.ibhs import IBHS
-from costeer.methods.interface import rule_of
 from costeer.plant.parameters import ColumnParameters
 
 QUIET = DriverNoise(*([0.0] * len(DriverNoise._fields)))._replace(
     look_uniform=1.0, glance_uniform=1.0, leader_uniform=-1.0, tracker_uniform=0.9
 )
 SPEED = 20.0
-RULE = rule_of(IBHS)
+RULES = rules_of(IBHS)
 Parameters: TypeAlias = LoopParameters[ControllerParameters]
 State: TypeAlias = LoopState[ControllerState]
 
@@ -47,12 +53,12 @@ def after(
 ) -> tuple[State, Sample[ControllerState]]:
     """One step later, nothing asked of the method."""
     measurement = sense(parameters, state)
-    return step(RULE, parameters, state, measurement, Request(), noise)
+    return step(RULES, parameters, state, measurement, Request(), noise)
 
 
 def run(parameters: Parameters, num_steps: int) -> list[State]:
     """States after each step, nobody at the wheel, no noise."""
-    state, states = initial_state(RULE, parameters), []
+    state, states = initial_state(RULES, parameters), []
     for _ in range(num_steps):
         state, _ = after(parameters, state)
         states.append(state)
@@ -88,8 +94,8 @@ def test_finer_plant_steps_change_a_run_little() -> None:
 def test_the_trial_starts_in_the_cruising_lane_of_its_side() -> None:
     left = hands_off_loop()
     right = left._replace(road=left.road._replace(overtaking_side=1.0))
-    assert initial_state(RULE, left).world.vehicle.lateral_position == 0.0
-    assert initial_state(RULE, right).world.vehicle.lateral_position == -3.5
+    assert initial_state(RULES, left).world.vehicle.lateral_position == 0.0
+    assert initial_state(RULES, right).world.vehicle.lateral_position == -3.5
 
 
 def test_a_request_lasts_a_tenth_of_a_second() -> None:
@@ -105,19 +111,20 @@ def test_a_plan_counts_while_its_crossing_lies_ahead_within_the_horizon() -> Non
 
 
 def test_a_verdict_comes_the_horizon_or_half_the_change_before_the_crossing() -> None:
-    state = initial_state(RULE, PARAMETERS)
-    plan = state.driver.decision._replace(
+    state = initial_state(RULES, PARAMETERS)
+    decided = state.driver.decision._replace(
         phase=PREPARING, preparation_time=9.0, change_duration=8.0
     )
+
+    def planning(decided: DecisionState) -> LoopState[ControllerState]:
+        plan = Plan(decided.change_duration, time_to_crossing(decided))
+        return state._replace(plan=plan)
 
     def verdicts(parameters: Parameters) -> list[float]:
         """When the verdict is positive before the crossing, 13 s after the decision."""
         times = np.arange(0.0, 9.0, 0.1)
         states = [
-            state._replace(
-                driver=state.driver._replace(decision=plan._replace(time_in_phase=time))
-            )
-            for time in times.tolist()
+            planning(decided._replace(time_in_phase=time)) for time in times.tolist()
         ]
         given = [scripted_probability(parameters, one, 5.0) for one in states]
         return [13.0 - t for t, p in zip(times.tolist(), given, strict=True) if p > 0.5]
@@ -125,14 +132,13 @@ def test_a_verdict_comes_the_horizon_or_half_the_change_before_the_crossing() ->
     assert max(verdicts(PARAMETERS)) == pytest.approx(5.0, abs=0.101)
     follower = PARAMETERS._replace(follows_plan=1.0)
     assert verdicts(follower) == []  # a change of 8 s begins 4 s before the crossing
-    begun = plan._replace(phase=CHANGING, time_in_phase=0.0)
-    steering = state._replace(driver=state.driver._replace(decision=begun))
+    steering = planning(decided._replace(phase=CHANGING, time_in_phase=0.0))
     assert scripted_probability(follower, steering, 5.0) == 1.0
 
 
 def test_the_tracker_sees_the_head_of_the_step_before() -> None:
     turned = hands_off_loop()._replace(driver=DriverParameters())
-    state = initial_state(RULE, turned)
+    state = initial_state(RULES, turned)
     head = state.driver.gaze._replace(
         glancing=True, time_in_glance=0.5, side=1.0, amplitude=0.4
     )
@@ -145,11 +151,13 @@ def test_the_tracker_sees_the_head_of_the_step_before() -> None:
 
 def test_a_lost_face_is_not_valid_in_the_measurement() -> None:
     lost = QUIET._replace(tracker_uniform=0.0)  # below any rate times the step
-    state = initial_state(RULE, PARAMETERS)
+    state = initial_state(RULES, PARAMETERS)
     moved, sample = after(PARAMETERS, state, lost)
     assert sample.measurement.head_yaw_valid
     assert not sense(PARAMETERS, moved).head_yaw_valid
 
 
 def test_a_driver_without_a_plan_is_no_positive() -> None:
-    assert scripted_probability(PARAMETERS, initial_state(RULE, PARAMETERS), 3.0) == 0.0
+    assert (
+        scripted_probability(PARAMETERS, initial_state(RULES, PARAMETERS), 3.0) == 0.0
+    )

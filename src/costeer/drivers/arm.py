@@ -74,13 +74,15 @@ class ArmCommand(NamedTuple):
             at once [-].
         guidance: Torque felt from the guidance [N·m].
         reliance: Share of agreeing guidance that replaces own torque [-].
+        torque: Given besides, whatever the wheel does [N·m].
     """
 
-    intended_angle: Real
-    holding_stiffness: Real
-    stiffening: Real
-    guidance: Real
-    reliance: Real
+    intended_angle: Real = 0.0
+    holding_stiffness: Real = 0.0
+    stiffening: Real = 1.0
+    guidance: Real = 0.0
+    reliance: Real = 0.0
+    torque: Real = 0.0
 
 
 @compiled
@@ -171,7 +173,7 @@ def muscle_torque(
     reflex = (1.0 - parameters.intrinsic_share) * state.reflex
     elastic = parameters.stiffness * (intrinsic + reflex)
     muscles = holding * state.equilibrium + elastic - state.relief
-    return parameters.hands_on * muscles
+    return parameters.hands_on * (muscles + command.torque)
 
 
 @compiled

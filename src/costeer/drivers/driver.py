@@ -7,7 +7,6 @@ from typing import NamedTuple
 from costeer.base import array as xp
 from costeer.base.array import Real, compiled
 from costeer.drivers import (
-    arm,
     decision,
     gaze,
     longitudinal,
@@ -15,12 +14,7 @@ from costeer.drivers import (
     tracking,
     vision,
 )
-from costeer.drivers.arm import (
-    ArmCommand,
-    ArmParameters,
-    ArmState,
-    wanted_torque,
-)
+from costeer.drivers.arm import ArmCommand, ArmParameters, wanted_torque
 from costeer.drivers.decision import (
     DecisionParameters,
     DecisionState,
@@ -28,22 +22,19 @@ from costeer.drivers.decision import (
     Surroundings,
 )
 from costeer.drivers.gaze import GazeDraws, GazeParameters, GazeState
-from costeer.drivers.longitudinal import (
-    LongitudinalParameters,
-    LongitudinalState,
-    Pedals,
+from costeer.drivers.interface import (
+    Action,
+    DriverNoise,
+    Knowledge,
+    Perception,
+    Plan,
 )
+from costeer.drivers.longitudinal import LongitudinalParameters, LongitudinalState
 from costeer.drivers.reliance import RelianceParameters, RelianceState
 from costeer.drivers.tracking import TrackingParameters, TrackingState
 from costeer.drivers.vision import VisionNoise, VisionParameters, VisionState
-from costeer.plant.parameters import (
-    CarParameters,
-    ColumnParameters,
-    RoadParameters,
-    holding_stiffness,
-)
+from costeer.plant.parameters import holding_stiffness
 from costeer.plant.road import cruising_lane
-from costeer.plant.traffic import LeaderState
 from costeer.sensing.measurement import Measurement
 
 
@@ -79,7 +70,6 @@ class DriverState(NamedTuple):
     """What the driver remembers."""
 
     vision: VisionState
-    arm: ArmState
     reliance: RelianceState
     tracking: TrackingState
     decision: DecisionState
@@ -87,79 +77,14 @@ class DriverState(NamedTuple):
     longitudinal: LongitudinalState
 
 
-class Knowledge(NamedTuple):
-    """What the driver knows by experience: car, wheel and road."""
-
-    car: CarParameters
-    column: ColumnParameters
-    road: RoadParameters
-
-
-class Perception(NamedTuple):
-    """What reaches the driver in one step.
-
-    Attributes:
-        measurement: Motion of the car, as seen and felt.
-        leader: The car ahead.
-        guidance_torque: At the wheel, felt by the hands [N·m].
-    """
-
-    measurement: Measurement
-    leader: LeaderState
-    guidance_torque: Real
-
-
-class DriverNoise(NamedTuple):
-    """Random numbers of one control step: standard normal, `_uniform` in [0, 1).
-
-    `NORMAL_DRAWS` of them come first.
-    """
-
-    near: Real
-    motor: Real
-    wander: Real
-    speed: Real
-    head_drift: Real
-    head_tracker: Real
-    glance_amplitude: Real
-    change_duration: Real
-    preparation_time: Real
-    look_uniform: Real
-    glance_uniform: Real
-    glance_side_uniform: Real
-    leader_uniform: Real
-    tracker_uniform: Real
-    abandoned_uniform: Real
-
-
-NORMAL_DRAWS = 9
-"""Fields of `DriverNoise` that are standard normal."""
-
-
-class Action(NamedTuple):
-    """What the driver does until the next step.
-
-    Attributes:
-        arm: Command to the arms.
-        pedals: Accelerator and brake.
-        head_yaw: In [-1, 1], left positive [-].
-        intention: Side of the decided lane change, -1 right, 0 none, +1 left [-].
-    """
-
-    arm: ArmCommand
-    pedals: Pedals
-    head_yaw: Real
-    intention: Real
-
-
 @compiled
-def initial_state(lateral_position: Real) -> DriverState:
-    """A driver who aims at `lateral_position` [m]."""
+def initial_state(parameters: DriverParameters, lateral_position: Real) -> DriverState:
+    """A driver in a lane whose centre lies at `lateral_position` [m]."""
+    aimed = lateral_position + parameters.tracking.lane_bias
     return DriverState(
         vision=vision.initial_state(),
-        arm=arm.initial_state(),
         reliance=reliance.initial_state(),
-        tracking=tracking.initial_state(lateral_position),
+        tracking=tracking.initial_state(aimed),
         decision=decision.initial_state(),
         gaze=gaze.initial_state(),
         longitudinal=longitudinal.initial_state(),
@@ -340,7 +265,6 @@ def act(
     )
     new_state = DriverState(
         vision=eyes,
-        arm=state.arm,
         reliance=hands,
         tracking=aimed,
         decision=decided,
@@ -354,4 +278,9 @@ def act(
         ),
         head_yaw=gaze.head_yaw(parameters.gaze, head),
         intention=direction,
+        at_home=decided.phase == decision.CRUISING,
+        plan=Plan(
+            change_duration=decided.change_duration,
+            time_to_crossing=decision.time_to_crossing(decided),
+        ),
     )

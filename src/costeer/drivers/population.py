@@ -16,8 +16,9 @@ from numpy.typing import NDArray
 from costeer.base.array import Real
 from costeer.drivers.arm import ArmParameters
 from costeer.drivers.decision import DecisionParameters
-from costeer.drivers.driver import DriverParameters
+from costeer.drivers.driver import DriverParameters, act, initial_state
 from costeer.drivers.gaze import GazeParameters
+from costeer.drivers.interface import Draw, DriverModel
 from costeer.drivers.longitudinal import LongitudinalParameters
 from costeer.drivers.reliance import RelianceParameters
 from costeer.drivers.tracking import TrackingParameters
@@ -348,3 +349,18 @@ def hands_off(speed: Real) -> DriverParameters:
         gaze=GazeParameters(false_rate=0.0, drift_deviation=0.0),
         longitudinal=LongitudinalParameters(preferred_speed=speed, speed_deviation=0.0),
     )
+
+
+def _drawn(draw: Draw) -> DriverParameters:
+    return participant_driver(draw.seed, draw.participant, draw.speed)
+
+
+VIRTUAL = DriverModel(
+    name="virtual",
+    version=str(POPULATION_VERSION),
+    source="Saleh et al. (2013), with what docs/drivers.md adds",
+    parameters=_drawn,
+    initial_state=initial_state,
+    act=act,
+)
+"""The population that ships with costeer."""

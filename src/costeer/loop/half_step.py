@@ -10,9 +10,9 @@ from __future__ import annotations
 from typing import Any, Generic, NamedTuple, TypeVar
 
 from costeer.base import array as xp
-from costeer.base.array import Flag, Real, inlined
+from costeer.base.array import Real, inlined
 from costeer.controller.signals import Assistance, Request
-from costeer.drivers.driver import Action
+from costeer.drivers.interface import Action
 from costeer.loop.events import EventState, Lead, initial_events, lead_of, step_events
 from costeer.loop.parameters import DT, LoopParameters
 from costeer.methods.interface import Rule
@@ -45,15 +45,13 @@ class Seat(NamedTuple):
     """What whoever drives does at a control step.
 
     Attributes:
-        action: Arms, pedals, head; the intention is NaN if nobody knows it.
-        at_home: Whether the driver is back in the cruising lane, which ends an event
-            zone: a virtual driver cruises, a person's car has settled.
+        action: Arms, pedals, head. At home is a virtual driver who cruises, and a
+            person whose car has settled.
         leader_uniform: Sets the next leader's speed, in [0, 1) [-].
         motor_torque: Guidance torque at the wheel now [N·m].
     """
 
     action: Action
-    at_home: Flag
     leader_uniform: Real
     motor_torque: Real
 
@@ -168,7 +166,7 @@ def half_step(
         parameters.road,
         state.events,
         measurement,
-        seat.at_home,
+        seat.action.at_home,
         xp.select(parameters.start.events > 0.5, seat.leader_uniform, -1.0),
         DT,
     )

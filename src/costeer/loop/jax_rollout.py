@@ -16,18 +16,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from costeer.base.array import Real
-from costeer.drivers.driver import DriverNoise
+from costeer.drivers.interface import AnyDriver, DriverNoise
+from costeer.drivers.population import VIRTUAL
 from costeer.loop.parameters import LoopParameters
-from costeer.loop.rows import writer_of
-from costeer.loop.step import LoopState, initial_state
+from costeer.loop.rows import rules_of, writer_of
+from costeer.loop.step import LoopState, Rules, initial_state
 from costeer.loop.tick import INTENTION_NETWORK, Script, tick
-from costeer.methods.interface import Method, P, Rule, S, rule_of
+from costeer.methods.interface import Method, P, S
 
 
 class Fixed(NamedTuple):
     """What the compiler must know of a trial: a new value is a new compilation."""
 
-    rule: Rule[Any, Any]  # Any: of any method
+    rules: Rules[Any, Any]  # Any: of any method and driver
     values: Callable[[Any], tuple[Any, ...]]  # Any: of a sample
     plant_steps: int
     intention: int
@@ -85,13 +86,13 @@ def trace(
 
     def advance(state: LoopState[Any], draws: Any) -> tuple[LoopState[Any], Any]:
         drawn = DriverNoise(*draws)
-        moved, sample = tick(fixed.rule, parameters, state, script, no_network, drawn)
+        moved, sample = tick(fixed.rules, parameters, state, script, no_network, drawn)
         numbers = [jax.numpy.asarray(n, float) for n in fixed.values(sample)]
         new_state = jax.tree_util.tree_map(_as_before, state, moved)
         position = new_state.world.vehicle.longitudinal_position
         return new_state, (position, jax.numpy.stack(numbers))
 
-    start = jax.tree_util.tree_map(_of_one_type, initial_state(fixed.rule, parameters))
+    start = jax.tree_util.tree_map(_of_one_type, initial_state(fixed.rules, parameters))
     _, (positions, rows) = jax.lax.scan(advance, start, noise)
     return positions, rows
 
@@ -126,7 +127,10 @@ def _many_trials() -> Any:  # Any: as above
 
 
 def _fixed(
-    method: Method[P, S], parameters: LoopParameters[P], script: Script
+    method: Method[P, S],
+    parameters: LoopParameters[P],
+    script: Script,
+    driver: AnyDriver,
 ) -> Fixed:
     """What the compiler must know.
 
@@ -139,7 +143,7 @@ def _fixed(
             "scripted or off, or choose the engine numba or python"
         )
     return Fixed(
-        rule_of(method),
+        rules_of(method, driver),
         writer_of(method).values,
         parameters.plant_steps,
         script.intention,
@@ -159,6 +163,7 @@ def jax_rollout(
     parameters: LoopParameters[P],
     script: Script,
     noise: NDArray[np.float64],
+    driver: AnyDriver = VIRTUAL,
 ) -> NDArray[np.float64]:
     """Run one trial.
 
@@ -167,6 +172,7 @@ def jax_rollout(
         parameters: Of the trial.
         script: Where the crossing probability comes from; not the network.
         noise: Random numbers, shape `(time, draw)`.
+        driver: Who holds the wheel.
 
     Returns:
         Rows in the order of `ROW_COLUMNS`, shape `(time, column)`.
@@ -175,7 +181,7 @@ def jax_rollout(
         ValueError: If the intention network is asked for.
         ModuleNotFoundError: If JAX is not installed.
     """
-    fixed = _fixed(method, parameters, script)
+    fixed = _fixed(method, parameters, script, driver)
     with float64():
         positions, rows = _one_trial()(
             parameters, script.horizon, script.trigger_times, noise, fixed=fixed
@@ -205,7 +211,7 @@ def jax_rollouts(
         ValueError: If the trials differ in plant steps, or the network is asked for.
         ModuleNotFoundError: If JAX is not installed.
     """
-    fixed = _fixed(method, parameters[0], script)
+    fixed = _fixed(method, parameters[0], script, VIRTUAL)
     steps = {one.plant_steps for one in parameters}
     if len(steps) > 1:
         raise ValueError(

@@ -11,7 +11,7 @@ import zlib
 import numpy as np
 from numpy.typing import NDArray
 
-from costeer.drivers.driver import NORMAL_DRAWS, DriverNoise
+from costeer.drivers.interface import NORMAL_DRAWS, DriverNoise
 
 _TRIAL_STREAM = 1
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Generic, NamedTuple, TypeVar
+from typing import Any, Generic, NamedTuple, TypeVar
 
 from costeer.base.array import Real
 from costeer.drivers.driver import DriverParameters
@@ -40,7 +40,7 @@ class LoopParameters(NamedTuple, Generic[P]):
         road: Lanes [SI units]. Source: plant/parameters.py.
         traffic: Leaders [SI units]. Source: plant/traffic.py.
         sensors: Errors [SI units]. Source: sensing/sensors.py.
-        driver: Who holds the wheel [SI units]. Source: drivers/driver.py.
+        driver: Who holds the wheel [SI units]. Source: the driver model, drivers/.
         start: How the trial begins [SI units]. Source: this file.
         follows_plan: 1 if the system's lane changes begin and last as the driver plans
             this one, 0 if as the method says [-]. Source: assumed, for the pilot runs
@@ -57,7 +57,7 @@ class LoopParameters(NamedTuple, Generic[P]):
     road: RoadParameters = RoadParameters()
     traffic: TrafficParameters = TrafficParameters()
     sensors: SensorParameters = SensorParameters()
-    driver: DriverParameters = DriverParameters()
+    driver: Any = DriverParameters()  # Any: of the driver model's own
     start: StartParameters = StartParameters()
     follows_plan: Real = 0.0
     assists: Real = 1.0

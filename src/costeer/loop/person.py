@@ -19,7 +19,7 @@ from costeer.controller.inference import InferenceParameters
 from costeer.controller.signals import Request
 from costeer.drivers import arm
 from costeer.drivers.arm import ArmCommand, ArmParameters
-from costeer.drivers.driver import Action
+from costeer.drivers.interface import Action
 from costeer.drivers.longitudinal import Pedals
 from costeer.loop.half_step import ControlState, Sample, Seat, half_step
 from costeer.loop.parameters import DT, LoopParameters
@@ -161,21 +161,14 @@ def seated(
     measurement: Measurement,
 ) -> Seat:
     """The person's seat; nobody knows what a person intends."""
-    command = ArmCommand(
-        intended_angle=given.intended_angle,
-        holding_stiffness=0.0,
-        stiffening=1.0,
-        guidance=0.0,
-        reliance=0.0,
-    )
     return Seat(
         action=Action(
-            arm=command,
+            arm=ArmCommand(intended_angle=given.intended_angle),
             pedals=Pedals(accelerator=given.accelerator, brake=given.brake),
             head_yaw=given.head_yaw,
             intention=math.nan,
+            at_home=at_home(parameters.road, measurement),
         ),
-        at_home=at_home(parameters.road, measurement),
         leader_uniform=given.leader_uniform,
         motor_torque=motion.plant.world.column.motor_torque,
     )
@@ -247,9 +240,6 @@ def hands_step(
         holding_stiffness=holding_stiffness(
             parameters.car, parameters.column, xp.maximum(speed, 1.0)
         ),
-        stiffening=1.0,
-        guidance=0.0,
-        reliance=0.0,
     )
     fixed = PlantHeld(
         car=parameters.car,

@@ -26,7 +26,7 @@ from costeer.loop.person import (
     initial_motion,
 )
 from costeer.loop.real_wheel import WheelInput, wheel_step
-from costeer.loop.rows import loop_rule, writer_of
+from costeer.loop.rows import writer_of
 from costeer.methods.interface import (
     Method,
     P,
@@ -162,7 +162,8 @@ def control_tick(method: Method[P, S]) -> ControlTick:
 
 def _compiled_tick(method: Method[P, S]) -> ControlTick:
     """`control_tick`, made anew."""
-    (initial_state, step), fill = loop_rule(method)
+    initial_state, step = rule_of(method)
+    fill = writer_of(method).fill
     like = LoopParameters(controller=usual_parameters(method))
     like_state = initial_control(rule_of(method), like)
 

@@ -15,10 +15,12 @@ from numpy.typing import NDArray
 
 from costeer.base.entry import entry_for
 from costeer.base.packing import pack, packed, unpack
+from costeer.drivers.interface import AnyDriver, Draw, DriverLaw
+from costeer.drivers.population import VIRTUAL
 from costeer.loop.jax_rollout import jax_rollout
 from costeer.loop.parameters import LoopParameters
-from costeer.loop.rows import LoopRule, loop_rule, writer_of
-from costeer.loop.step import LoopState, initial_state
+from costeer.loop.rows import LoopRule, loop_rule, rules_of, writer_of
+from costeer.loop.step import LoopState, Rules, initial_state
 from costeer.loop.tick import Network, Script, run
 from costeer.methods.interface import (
     Method,
@@ -26,7 +28,6 @@ from costeer.methods.interface import (
     Rule,
     S,
     compiled_once,
-    rule_of,
     usual_parameters,
 )
 
@@ -48,11 +49,13 @@ class Advance(Protocol):
         """
 
 
-def _compiled_trial(method: Method[P, S]) -> Any:  # Any: a compiled function of Numba
-    """The compiled trial of a method; its machine code lies in the method's folder."""
-    (begin, step), fill = loop_rule(method)
-    like = LoopParameters(controller=usual_parameters(method))
-    like_state = initial_state(rule_of(method), like)
+def _compiled_trial(
+    method: Method[P, S], driver: AnyDriver
+) -> Any:  # Any: a compiled function of Numba
+    """The compiled trial of both; its machine code lies in a folder of their own."""
+    ((begin, step), (sit, act)), fill = loop_rule(method, driver)
+    like = LoopParameters(usual_parameters(method), driver=driver.parameters(Draw()))
+    like_state = initial_state(rules_of(method, driver), like)
 
     def run_packed(
         parameters: Rows,
@@ -63,13 +66,13 @@ def _compiled_trial(method: Method[P, S]) -> Any:  # Any: a compiled function of
         rows: Rows,
     ) -> int:
         # A tuple of functions is made in compiled code: Numba cannot take one.
-        loop = LoopRule(Rule(begin, step), fill)
+        loop = LoopRule(Rules(Rule(begin, step), DriverLaw(sit, act)), fill)
         given, start = unpack(like, parameters), unpack(like_state, state)
         end, count = run(loop, given, start, script, network, noise, rows)
         pack(state, end)
         return count
 
-    return entry_for((begin, step), run_packed)
+    return entry_for((begin, step, sit, act), run_packed)
 
 
 def begun(
@@ -78,6 +81,7 @@ def begun(
     network: Network,
     engine: str = "numba",
     start: LoopState[S] | None = None,
+    driver: AnyDriver = VIRTUAL,
 ) -> Advance:
     """A trial at its start, and the function that runs it on.
 
@@ -87,14 +91,15 @@ def begun(
         network: Of the intention, changed in place.
         engine: "numba" or "python".
         start: State that it starts from, if not the usual one.
+        driver: Who holds the wheel.
 
     Raises:
         ValueError: If the engine is not known; when it is called, also if the method
             cannot be compiled.
     """
-    state = start or initial_state(rule_of(method), parameters)
+    state = start or initial_state(rules_of(method, driver), parameters)
     if engine == "python":
-        return _in_python(method, parameters, state, network)
+        return _in_python(method, driver, parameters, state, network)
     if engine != "numba":
         raise ValueError(f"engine '{engine}' is not known; choose numba, python or jax")
     numbers, memory = packed(parameters), packed(state)
@@ -102,29 +107,33 @@ def begun(
     def advance(script: Script, noise: Rows, rows: Rows, keep: bool = True) -> int:
         now = memory if keep else memory.copy()
         try:
-            trial = compiled_once(_compiled_trial, method)
+            trial = compiled_once(_compiled_trial, method, driver)
             count: int = trial(numbers, now, script, network, noise, rows)
         except errors.NumbaError as error:
-            raise ValueError(cannot_compile(method, error)) from error
+            raise ValueError(cannot_compile(_whose(method, driver), error)) from error
         except Exception as error:  # whatever somebody else's code raises
-            raise ValueError(broke(method, error)) from error
+            raise ValueError(broke(_whose(method, driver), error)) from error
         return count
 
     return advance
 
 
 def _in_python(
-    method: Method[P, S], parameters: LoopParameters[P], state: Any, network: Network
+    method: Method[P, S],
+    driver: AnyDriver,
+    parameters: LoopParameters[P],
+    state: Any,
+    network: Network,
 ) -> Advance:
     """The trial as plain Python."""
-    loop = loop_rule(method)
+    loop = loop_rule(method, driver)
 
     def advance(script: Script, noise: Rows, rows: Rows, keep: bool = True) -> int:
         nonlocal state
         try:
             end, count = run(loop, parameters, state, script, network, noise, rows)
         except Exception as error:  # as above
-            raise ValueError(broke(method, error)) from error
+            raise ValueError(broke(_whose(method, driver), error)) from error
         state = end if keep else state
         return count
 
@@ -138,6 +147,7 @@ def rollout(
     network: Network,
     noise: Rows,
     engine: str = "numba",
+    driver: AnyDriver = VIRTUAL,
 ) -> Rows:
     """Run one trial.
 
@@ -148,6 +158,7 @@ def rollout(
         network: Of the intention, changed in place.
         noise: Random numbers, shape `(time, draw)`.
         engine: "numba", "python" or "jax"; JAX runs no network.
+        driver: Who holds the wheel.
 
     Returns:
         Rows of the record's columns, the method's own last, `(time, column)`.
@@ -158,9 +169,10 @@ def rollout(
         ModuleNotFoundError: If the engine is not installed.
     """
     if engine == "jax":
-        return jax_rollout(method, parameters, script, noise)
+        return jax_rollout(method, parameters, script, noise, driver)
     rows = np.empty((len(noise), len(writer_of(method).columns)))
-    count = begun(method, parameters, network, engine)(script, noise, rows)
+    run_on = begun(method, parameters, network, engine, driver=driver)
+    count = run_on(script, noise, rows)
     return rows[:count]
 
 
@@ -178,19 +190,30 @@ _REASONS = (
 """How the lines begin in which Numba says what is wrong."""
 
 
-def cannot_compile(method: Method[P, S], error: Exception) -> str:
-    """Why a method does not compile, in the lines that speak of its own code."""
+def _whose(method: Method[P, S], driver: AnyDriver) -> str:
+    """Whose code runs in a loop."""
+    own = "" if driver is VIRTUAL else f" with driver '{driver.name}'"
+    return f"method '{method.name}'{own}"
+
+
+def cannot_compile(whose: str, error: Exception) -> str:
+    """Why a loop does not compile, in the lines that speak of its own code.
+
+    Args:
+        whose: Name of what does not compile.
+        error: Of Numba.
+    """
     told = [line.strip(" -\t") for line in str(error).splitlines()]
     reasons = [line for line in told if line.startswith(_REASONS)]
     places = [line for line in told if line.startswith("File") and OURS not in line]
     said = list(dict.fromkeys([*reasons[:3], *places[:1]])) or told[:1]
     return (
-        f"method '{method.name}' cannot be compiled: {'; '.join(said)}. Each "
+        f"{whose} cannot be compiled: {'; '.join(said)}. Each "
         "of its functions, and each function they call, is marked @compiled; "
         "costeer.testing.check_method says more"
     )
 
 
-def broke(method: Method[P, S], error: Exception) -> str:
-    """What is said when a method's code raises in the middle of a trial."""
-    return f"step of method '{method.name}' broke: {type(error).__name__}: {error}"
+def broke(whose: str, error: Exception) -> str:
+    """What is said when code of somebody else raises in the middle of a trial."""
+    return f"a step of {whose} broke: {type(error).__name__}: {error}"

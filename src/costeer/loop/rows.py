@@ -7,23 +7,31 @@ from functools import cache
 from typing import Any, Generic, NamedTuple
 
 from costeer.controller.signals import Request
-from costeer.drivers.driver import DriverNoise
+from costeer.drivers.interface import DriverModel, DriverNoise, law_of
+from costeer.drivers.population import VIRTUAL
 from costeer.loop.half_step import Sample
 from costeer.loop.parameters import LoopParameters
-from costeer.loop.step import initial_state, sense, step
-from costeer.methods.interface import Method, P, Rule, S, rule_of, usual_parameters
+from costeer.loop.step import Rules, initial_state, sense, step
+from costeer.methods.interface import Method, P, S, rule_of, usual_parameters
 from costeer.records.columns import with_method_columns
 from costeer.records.row import RowWriter, row_writer
 
 
+def rules_of(
+    method: Method[P, S], driver: DriverModel[Any, Any] = VIRTUAL
+) -> Rules[P, S]:
+    """What the loop calls of a method and of a driver."""
+    return Rules(method=rule_of(method), driver=law_of(driver))
+
+
 def sample_like(method: Method[P, S]) -> Sample[S]:
     """A sample of a method's loop, whose kinds and places are those of all."""
-    rule = rule_of(method)
+    rules = rules_of(method)
     parameters = LoopParameters(controller=usual_parameters(method))
-    state = initial_state(rule, parameters)
+    state = initial_state(rules, parameters)
     noise = DriverNoise(*([0.0] * len(DriverNoise._fields)))
     measurement = sense(parameters, state)
-    _, sample = step(rule, parameters, state, measurement, Request(), noise)
+    _, sample = step(rules, parameters, state, measurement, Request(), noise)
     return sample
 
 
@@ -40,21 +48,23 @@ def writer_of(method: Method[P, S]) -> RowWriter:
 
 
 class LoopRule(NamedTuple, Generic[P, S]):
-    """All functions that the loop of a method is made of.
+    """All functions that a loop is made of.
 
     Attributes:
-        rule: Of the method.
+        rules: Of method and driver.
         fill: Writes a sample into a row.
     """
 
-    rule: Rule[P, S]
+    rules: Rules[P, S]
     fill: Callable[[Any, Any], None]  # Any: an array, and a sample of the method
 
 
-def loop_rule(method: Method[P, S]) -> LoopRule[P, S]:
-    """The functions of a method's loop.
+def loop_rule(
+    method: Method[P, S], driver: DriverModel[Any, Any] = VIRTUAL
+) -> LoopRule[P, S]:
+    """The functions of the loop of a method and a driver.
 
     Raises:
         ValueError: If a column of the method is none.
     """
-    return LoopRule(rule_of(method), writer_of(method).fill)
+    return LoopRule(rules_of(method, driver), writer_of(method).fill)

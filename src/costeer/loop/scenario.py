@@ -6,8 +6,11 @@ import math
 from typing import Any, NamedTuple
 
 from costeer.base.array import Real
+from costeer.drivers.checked import drawn_parameters
 from costeer.drivers.driver import DriverParameters
-from costeer.drivers.population import hands_off, participant_driver
+from costeer.drivers.interface import AnyDriver, Draw
+from costeer.drivers.population import VIRTUAL, hands_off, participant_driver
+from costeer.drivers.registry import HANDS_OFF, driver_named
 from costeer.intention.predictors.chosen import Judge
 from costeer.intention.predictors.interface import Predictor
 from costeer.intention.predictors.registry import OURS
@@ -36,9 +39,6 @@ INTENTIONS = {
 }
 """Where the crossing probability comes from, by name."""
 
-DRIVERS = ("virtual", "hands-off")
-"""Who holds the wheel."""
-
 PILOT_SEED = 900_001
 """Seed of the pilot drivers that set the inconsistency threshold δ."""
 
@@ -60,7 +60,8 @@ class TrialSetup(NamedTuple):
         length: Of the course [m].
         speed: That the trial starts with and the driver prefers [m/s].
         car: Name of the car, or its parameters.
-        driver: "virtual", "hands-off", or the parameters of a virtual driver.
+        driver: "virtual", "hands-off", the parameters of a virtual driver, or a
+            driver model, its name or where it is (`drivers.registry`).
         intention: "network", "scripted" (a perfect predictor of the driver's own
             plan) or "off".
         predictor: What predicts a crossing where the intention is "network": the
@@ -91,7 +92,7 @@ class TrialSetup(NamedTuple):
     length: Real = 8000.0
     speed: Real = 70.0 / 3.6
     car: str | CarParameters = "default"
-    driver: str | DriverParameters = "virtual"
+    driver: str | DriverParameters | AnyDriver = "virtual"
     intention: str = "network"
     predictor: str | Predictor | Judge = OURS
     weights: str | None = None
@@ -157,8 +158,7 @@ def check_setup(setup: TrialSetup) -> None:
             )
     if not isinstance(setup.car, CarParameters):
         _check_choice("car", setup.car, tuple(CARS))
-    if not isinstance(setup.driver, DriverParameters):
-        _check_choice("driver", setup.driver, DRIVERS)
+    trial_driver_model(setup)
     _check_choice("intention", setup.intention, tuple(INTENTIONS))
     trial_condition(setup)
     method_named(setup.method)
@@ -217,12 +217,32 @@ def trial_car(setup: TrialSetup) -> CarParameters:
     return CARS[setup.car] if isinstance(setup.car, str) else setup.car
 
 
-def trial_driver(setup: TrialSetup) -> DriverParameters:
-    """The driver of a trial, drawn from the population by seed and participant."""
+def trial_driver_model(setup: TrialSetup) -> AnyDriver:
+    """Who holds the wheel in a trial.
+
+    Raises:
+        ValueError: If there is no such driver.
+    """
+    if isinstance(setup.driver, DriverParameters):
+        return VIRTUAL
+    return driver_named(setup.driver)
+
+
+def trial_driver(setup: TrialSetup) -> Any:  # Any: parameters of the model's own
+    """Parameters of a trial's driver, drawn by seed and participant.
+
+    Raises:
+        ValueError: If there is no such driver.
+    """
     if isinstance(setup.driver, DriverParameters):
         return setup.driver
-    if setup.driver == "hands-off":
+    if setup.driver == HANDS_OFF:
         return hands_off(setup.speed)
+    model = trial_driver_model(setup)
+    if model is not VIRTUAL:
+        _check_unused(setup, model)
+        draw = Draw(setup.seed, setup.participant, setup.speed, trial_car(setup))
+        return drawn_parameters(model, draw)
     drawn = participant_driver(setup.seed, setup.participant, setup.speed)
     aim, decides = drawn.tracking, drawn.decision
     wander = aim.wander_deviation * setup.wander_factor
@@ -230,6 +250,20 @@ def trial_driver(setup: TrialSetup) -> DriverParameters:
         tracking=aim._replace(wander_deviation=wander),
         decision=decides._replace(abandoned_share=setup.abandoned_share),
     )
+
+
+def _check_unused(setup: TrialSetup, model: AnyDriver) -> None:
+    """Refuse what only a virtual driver has.
+
+    Raises:
+        ValueError: Naming it.
+    """
+    for name in ("abandoned_share", "wander_factor"):
+        if getattr(setup, name) != TrialSetup._field_defaults[name]:
+            raise ValueError(
+                f"{name} is {getattr(setup, name)}; driver model '{model.name}' has no "
+                "such thing, leave it out"
+            )
 
 
 def _check_road(road: RoadParameters) -> None:

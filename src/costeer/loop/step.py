@@ -13,17 +13,16 @@ from typing import Any, Generic, NamedTuple, TypeVar
 from costeer.base import array as xp
 from costeer.base.array import Flag, Real, compiled, inlined, repeat
 from costeer.controller.signals import Request
-from costeer.drivers import arm, driver
+from costeer.drivers import arm
 from costeer.drivers.arm import ArmCommand, ArmParameters, ArmState
-from costeer.drivers.decision import CRUISING
-from costeer.drivers.driver import (
+from costeer.drivers.interface import (
     Action,
+    DriverLaw,
     DriverNoise,
-    DriverState,
     Knowledge,
     Perception,
+    Plan,
 )
-from costeer.drivers.gaze import head_yaw
 from costeer.loop.half_step import (
     ControlState,
     Sample,
@@ -47,7 +46,20 @@ from costeer.sensing.sensors import (
     track_head,
 )
 
+P = TypeVar("P")
 S = TypeVar("S")
+
+
+class Rules(NamedTuple, Generic[P, S]):
+    """The functions of the two who share the wheel.
+
+    Attributes:
+        method: Of the assistance.
+        driver: Of who holds the wheel.
+    """
+
+    method: Rule[P, S]
+    driver: DriverLaw[Any, Any]
 
 
 class LoopState(NamedTuple, Generic[S]):
@@ -56,18 +68,24 @@ class LoopState(NamedTuple, Generic[S]):
     Attributes:
         world: Car and column.
         control: Method, leader, torque command and time.
-        driver: Who holds the wheel.
+        driver: Who holds the wheel; what it remembers is its own.
+        arm: Of that driver.
+        plan: That the driver had at the step before.
         head: What the tracker says of the head.
     """
 
     world: WorldState
     control: ControlState[S]
-    driver: DriverState
+    driver: Any
+    arm: ArmState
+    plan: Plan
     head: HeadTracker
 
 
 @compiled
-def initial_state(rule: Rule[Any, S], parameters: LoopParameters[Any]) -> LoopState[S]:
+def initial_state(
+    rules: Rules[Any, S], parameters: LoopParameters[Any]
+) -> LoopState[S]:
     """The car in the cruising lane, driver relaxed, controller keeping that lane."""
     lane = cruising_lane(parameters.road)
     centre = lane_centre(parameters.road, lane)
@@ -76,8 +94,10 @@ def initial_state(rule: Rule[Any, S], parameters: LoopParameters[Any]) -> LoopSt
         world=world.initial_state(
             parameters.car, centre + offset, parameters.start.speed
         ),
-        control=initial_control(rule, parameters),
-        driver=driver.initial_state(centre + parameters.driver.tracking.lane_bias),
+        control=initial_control(rules.method, parameters),
+        driver=rules.driver.initial_state(parameters.driver, centre),
+        arm=arm.initial_state(),
+        plan=Plan(),
         head=initial_tracker(),
     )
 
@@ -89,7 +109,7 @@ def sense(parameters: LoopParameters[Any], state: LoopState[S]) -> Measurement:
         parameters.car,
         parameters.road,
         state.world,
-        state.driver.arm.torque,
+        state.arm.torque,
         state.head,
     )
 
@@ -168,7 +188,7 @@ def move(
         ),
         dt=DT / parameters.plant_steps,
     )
-    start = PlantMotion(world=state.world, arm=state.driver.arm, muscles=0.0)
+    start = PlantMotion(world=state.world, arm=state.arm, muscles=0.0)
     motion = repeat(plant_step, parameters.plant_steps, start, held)
     moved = motion.arm
     return motion.world, moved._replace(
@@ -176,13 +196,14 @@ def move(
     )
 
 
-@compiled
+@inlined
 def drive(
+    law: DriverLaw[Any, Any],
     parameters: LoopParameters[Any],
     state: LoopState[S],
     measurement: Measurement,
     noise: DriverNoise,
-) -> tuple[DriverState, Action]:
+) -> tuple[Any, Action]:
     """What the driver does at this step."""
     knowledge = Knowledge(
         car=parameters.car, column=parameters.column, road=parameters.road
@@ -192,13 +213,13 @@ def drive(
         leader=state.control.events.leader,
         guidance_torque=state.world.column.motor_torque,
     )
-    return driver.act(parameters.driver, state.driver, knowledge, perception, noise, DT)
+    return law.act(parameters.driver, state.driver, knowledge, perception, noise, DT)
 
 
 @compiled
 def own_duration(parameters: LoopParameters[Any], state: LoopState[S]) -> Real:
     """Duration that the driver plans if the system follows it, else NaN [s]."""
-    own = state.driver.decision.change_duration
+    own = state.plan.change_duration
     return xp.select(parameters.follows_plan > 0.5, own, math.nan)
 
 
@@ -206,14 +227,14 @@ def own_duration(parameters: LoopParameters[Any], state: LoopState[S]) -> Real:
 def _tracked(
     parameters: LoopParameters[Any],
     state: LoopState[S],
-    moved: DriverState,
+    head_yaw: Real,
     noise: DriverNoise,
 ) -> HeadTracker:
-    """What the tracker says of the head of a driver who has moved."""
+    """What the tracker says of a head that is turned by `head_yaw` [-]."""
     return track_head(
         parameters.sensors,
         state.head,
-        head_yaw(parameters.driver.gaze, moved.gaze),
+        head_yaw,
         TrackerNoise(normal=noise.head_tracker, uniform=noise.tracker_uniform),
         DT,
     )
@@ -221,39 +242,40 @@ def _tracked(
 
 @inlined
 def step(
-    rule: Rule[Any, S],
+    rules: Rules[Any, S],
     parameters: LoopParameters[Any],
     state: LoopState[S],
     measurement: Measurement,
     request: Request,
     noise: DriverNoise,
 ) -> tuple[LoopState[S], Sample[S]]:
-    """Close the loop for one control step, a virtual driver in the seat.
+    """Close the loop for one control step, a driver model in the seat.
 
     Args:
-        rule: The method's functions.
+        rules: The functions of method and driver.
         parameters: Of the trial.
         state: Of everything.
         measurement: This step's sample (`sense`).
         request: Verdict of the predictor and what is asked for from outside.
         noise: Random numbers of this step.
     """
-    driver_state, action = drive(parameters, state, measurement, noise)
+    driver, action = drive(rules.driver, parameters, state, measurement, noise)
     seat = Seat(
         action=action,
-        at_home=driver_state.decision.phase == CRUISING,
         leader_uniform=noise.leader_uniform,
         motor_torque=state.world.column.motor_torque,
     )
     control, sample = half_step(
-        rule, parameters, state.control, measurement, request, seat
+        rules.method, parameters, state.control, measurement, request, seat
     )
     moved_world, moved_arm = move(parameters, state, action)
     return LoopState(
         world=moved_world,
         control=control,
-        driver=driver_state._replace(arm=moved_arm),
-        head=_tracked(parameters, state, driver_state, noise),
+        driver=driver,
+        arm=moved_arm,
+        plan=action.plan,
+        head=_tracked(parameters, state, action.head_yaw, noise),
     ), sample
 
 

@@ -16,8 +16,7 @@ from costeer.base import array as xp
 from costeer.base.array import Flag, Real, compiled, inlined
 from costeer.base.packing import unpack
 from costeer.controller.signals import Request
-from costeer.drivers.decision import time_to_crossing
-from costeer.drivers.driver import DriverNoise
+from costeer.drivers.interface import DriverNoise
 from costeer.intention.features import IntentionSample, facing
 from costeer.intention.wavefront import WavefrontState, WavefrontWeights, advance
 from costeer.loop.half_step import Sample
@@ -25,12 +24,12 @@ from costeer.loop.parameters import DT, LoopParameters
 from costeer.loop.rows import LoopRule
 from costeer.loop.step import (
     LoopState,
+    Rules,
     own_duration,
     planned_to_cross,
     sense,
     step,
 )
-from costeer.methods.interface import Rule
 from costeer.sensing.measurement import Measurement
 
 S = TypeVar("S")
@@ -106,11 +105,11 @@ def scripted_probability(
     A system that follows the plan begins when the driver does, half the planned
     duration before the crossing.
     """
-    plan = state.driver.decision
+    plan = state.plan
     begins = xp.select(
         parameters.follows_plan > 0.5, plan.change_duration / 2.0, horizon
     )
-    return xp.select(planned_to_cross(time_to_crossing(plan), begins), 1.0, 0.0)
+    return xp.select(planned_to_cross(plan.time_to_crossing, begins), 1.0, 0.0)
 
 
 @compiled
@@ -125,7 +124,7 @@ def requested(trigger_times: NDArray[np.float64], time: Real) -> Flag:
 
 @inlined
 def tick(
-    rule: Rule[Any, S],
+    rules: Rules[Any, S],
     parameters: LoopParameters[Any],
     state: LoopState[S],
     script: Script,
@@ -148,7 +147,7 @@ def tick(
         requested=requested(script.trigger_times, state.control.time),
         change_duration=own_duration(parameters, state),
     )
-    return step(rule, parameters, state, measurement, request, noise)
+    return step(rules, parameters, state, measurement, request, noise)
 
 
 @compiled
@@ -164,7 +163,7 @@ def run(
     """Fill `rows` until the road or the noise ends; return how many were filled.
 
     Args:
-        loop: The functions of the method's loop.
+        loop: The functions of the loop.
         parameters: Of the trial.
         state: At the beginning.
         script: Where the crossing probability comes from.
@@ -174,7 +173,7 @@ def run(
     """
     for k in range(len(noise)):
         drawn = unpack(_NOISE, noise[k])
-        state, sample = tick(loop.rule, parameters, state, script, network, drawn)
+        state, sample = tick(loop.rules, parameters, state, script, network, drawn)
         loop.fill(rows[k], sample)
         if state.world.vehicle.longitudinal_position >= parameters.road.length:
             return state, k + 1

@@ -13,7 +13,10 @@ from numpy.typing import NDArray
 
 from costeer.base.array import Real
 from costeer.base.described import described
-from costeer.drivers.population import POPULATION_VERSION
+from costeer.drivers.driver import DriverParameters
+from costeer.drivers.interface import AnyDriver, DriverModel, driver_sources
+from costeer.drivers.population import POPULATION_VERSION, VIRTUAL
+from costeer.drivers.registry import HANDS_OFF
 from costeer.intention.features import NUM_FEATURES, NUM_INPUTS, NUM_SCALED
 from costeer.intention.gru import NetworkWeights
 from costeer.intention.predictors.chosen import ChosenPredictor, chosen_predictor
@@ -36,12 +39,13 @@ from costeer.loop.scenario import (
     is_assisted,
     loop_parameters,
     trial_condition,
+    trial_driver_model,
     trial_method,
 )
 from costeer.loop.tick import Network, Script
 from costeer.methods.interface import Method, method_sources
+from costeer.records import metadata as kinds
 from costeer.records.columns import TrialRecord, with_method_columns
-from costeer.records.metadata import HANDS_OFF, RECORD_VERSION, VIRTUAL
 from costeer.records.row import ROW_COLUMNS, record_columns
 
 SLOWEST_SHARE = 0.5
@@ -139,8 +143,9 @@ def simulate_trial(setup: TrialSetup, engine: str = "numba") -> TrialRecord:
         trigger_times=np.array(sorted(setup.trigger_times), dtype=np.float64),
     )
     method, network = trial_method(setup), _network(setup, predictor)
+    driver = trial_driver_model(setup)
     if predictor is not None and predictor.judge is not None and engine != "jax":
-        advance = begun(method, parameters, network, engine)
+        advance = begun(method, parameters, network, engine, driver=driver)
         verdicts = Verdicts(predictor.judge, predictor.name)
         rows = outside_rollout(
             advance,
@@ -151,7 +156,7 @@ def simulate_trial(setup: TrialSetup, engine: str = "numba") -> TrialRecord:
             len(writer_of(method).columns),
         )
     else:
-        rows = rollout(method, parameters, script, network, noise, engine)
+        rows = rollout(method, parameters, script, network, noise, engine, driver)
     _refuse_broken(setup, rows)
     columns = record_columns(
         rows, is_assisted(setup), with_method_columns(method.columns)
@@ -188,6 +193,7 @@ def trial_metadata(
     configuration["setup"] = _as_dict(setup)
     text = json.dumps(configuration, sort_keys=True)
     condition, method = trial_condition(setup), trial_method(setup)
+    driver = trial_driver_model(setup)
     return {
         "version": distribution.version("costeer"),
         "seed": setup.seed,
@@ -200,7 +206,8 @@ def trial_metadata(
         "method_source_hash": method_sources(method),
         "car": setup.car if isinstance(setup.car, str) else "own",
         "speed": setup.speed,
-        "driver": _driver_text(setup),
+        "driver": _driver_text(setup, driver),
+        "driver_source_hash": driver_sources(driver),
         "predictor": None if predictor is None else predictor.name,
         "intention_model_hash": None if predictor is None else predictor.hash,
         **_thresholds(parameters),
@@ -208,16 +215,18 @@ def trial_metadata(
         "configuration_hash": hashlib.sha256(text.encode()).hexdigest(),
         "driver_torque_source": "simulated",
         "git_revision": git_revision(),
-        "driver_kind": HANDS_OFF if setup.driver == HANDS_OFF else VIRTUAL,
-        "record_version": RECORD_VERSION,
+        "driver_kind": kinds.HANDS_OFF if setup.driver == HANDS_OFF else kinds.VIRTUAL,
+        "record_version": kinds.RECORD_VERSION,
     }
 
 
-def _driver_text(setup: TrialSetup) -> str:
+def _driver_text(setup: TrialSetup, driver: AnyDriver) -> str:
     """Who holds the wheel, in words."""
-    if isinstance(setup.driver, str):
+    if isinstance(setup.driver, DriverParameters):
+        return "virtual, parameters of its own"
+    if driver is VIRTUAL:
         return f"{setup.driver}, population {POPULATION_VERSION}"
-    return "virtual, parameters of its own"
+    return f"{driver.name} {driver.version}"
 
 
 def _thresholds(parameters: LoopParameters[Any]) -> dict[str, object]:
@@ -252,7 +261,7 @@ def git_revision() -> str | None:
 
 def _as_dict(value: Any) -> Any:  # Any: a tree of numbers, names and tuples
     """Nested named tuples as nested dictionaries; NaN, which JSON has not, as null."""
-    if isinstance(value, Method | Predictor):
+    if isinstance(value, Method | Predictor | DriverModel):
         return value.name
     if callable(value):
         return getattr(value, "__name__", type(value).__name__)

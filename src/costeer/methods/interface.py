@@ -130,14 +130,21 @@ def rule_of(method: Method[P, S]) -> Rule[P, S]:
 _COMPILED: dict[tuple[Any, ...], Any] = {}
 
 
-def compiled_once(make: Callable[[Method[P, S]], Any], method: Method[P, S]) -> Any:
+def compiled_once(
+    make: Callable[..., Any], method: Method[P, S], *others: tuple[Any, ...]
+) -> Any:
     """What `make` compiles for a method, made once for all that share its rule.
+
+    Args:
+        make: Called with the method and the others.
+        method: Whose functions are compiled.
+        *others: What else is compiled in.
 
     `manual` runs the paper's controller in the shadow: it needs no code of its own.
     """
-    key = (make, rule_of(method), method.columns, _layout(method))
+    key = (make, rule_of(method), method.columns, _layout(method), *others)
     if key not in _COMPILED:
-        _COMPILED[key] = make(method)
+        _COMPILED[key] = make(method, *others)
     return _COMPILED[key]
 
 

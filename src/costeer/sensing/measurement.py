@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from costeer.base.array import Flag, Real
+from costeer.plant.parameters import RoadParameters
+from costeer.plant.road import adjacent_side, cruising_lane, lane_centre
 
 
 class Measurement(NamedTuple):
@@ -47,3 +49,17 @@ class Measurement(NamedTuple):
     lane: Real
     side: Real
     distance_to_adjacent_lane: Real
+
+
+def standing_start(road: RoadParameters) -> Measurement:
+    """A car at 20 m/s in the middle of its lane."""
+    lane = cruising_lane(road)
+    zeros: dict[str, Any] = dict.fromkeys(Measurement._fields, 0.0)
+    return Measurement(**zeros)._replace(
+        lateral_position=lane_centre(road, lane),
+        longitudinal_velocity=20.0,
+        head_yaw_valid=True,
+        lane=lane,
+        side=adjacent_side(road, lane),
+        distance_to_adjacent_lane=road.lane_width / 2.0,
+    )

@@ -12,7 +12,6 @@ from numpy.typing import NDArray
 from costeer.base.packing import packed
 from costeer.controller.signals import Assistance, Request
 from costeer.loop.parameters import DT
-from costeer.methods.checked import standing_start
 from costeer.methods.conditions import CONDITIONS
 from costeer.methods.registry import AnyMethod
 from costeer.plant.parameters import CarParameters, ColumnParameters, RoadParameters
@@ -23,7 +22,7 @@ from costeer.plant.road import (
     lane_at,
 )
 from costeer.records.columns import COLUMNS
-from costeer.sensing.measurement import Measurement
+from costeer.sensing.measurement import Measurement, standing_start
 
 Rows = NDArray[np.float64]
 

@@ -22,13 +22,13 @@ from costeer.loop.rows import writer_of
 from costeer.loop.scenario import TrialSetup, loop_parameters
 from costeer.loop.tick import INTENTION_SCRIPTED, PREDICTION_HORIZON, Script
 from costeer.loop.trial import idle_network
-from costeer.methods.checked import standing_start
 from costeer.methods.conditions import CONDITIONS
 from costeer.methods.interface import compiled_once, usual_parameters
 from costeer.methods.registry import AnyMethod, method_named
 from costeer.plant.parameters import ColumnParameters, RoadParameters
 from costeer.plant.road import cruising_lane
 from costeer.records.columns import COLUMNS, Column
+from costeer.sensing.measurement import standing_start
 from costeer.testing.drive import (
     Drive,
     MethodError,
@@ -348,7 +348,7 @@ def _check_compiled_step(
         run = compiled_once(_compiled_drive, method)
         run(given, table, cruising_lane(road), torques)
     except Exception as error:  # whatever Numba raises of somebody else's code
-        raise MethodError(cannot_compile(method, error)) from error
+        raise MethodError(cannot_compile(f"method '{method.name}'", error)) from error
     expected = drive.torques
     apart = _apart(expected, torques)
     worst = int(np.argmax(apart))

@@ -19,10 +19,12 @@ from numpy.typing import NDArray
 from costeer.base.array import Real
 from costeer.controller import step as controller
 from costeer.controller import trajectory
-from costeer.drivers.driver import NORMAL_DRAWS, DriverNoise, DriverParameters
+from costeer.drivers.driver import DriverParameters
+from costeer.drivers.interface import NORMAL_DRAWS, DriverNoise, law_of
+from costeer.drivers.population import VIRTUAL
 from costeer.loop.parameters import DT, LoopParameters
+from costeer.loop.rows import rules_of
 from costeer.loop.step import LoopState, drive, initial_state, move, sense
-from costeer.methods.interface import rule_of
 from costeer.methods.manual import MANUAL
 from costeer.plant.road import cruising_lane
 from costeer.sensing.measurement import Measurement
@@ -76,9 +78,9 @@ def _stacked(members: Sequence[Any]) -> Any:  # Any: a tree of numbers or of arr
 
 def _displaced(parameters: LoopParameters[Any], x: Signal) -> LoopState[Any]:
     """The loop displaced from straight driving by `x`, `(driver, run, state)`."""
-    state = initial_state(rule_of(MANUAL), parameters)
+    state = initial_state(rules_of(MANUAL), parameters)
     at = dict(zip(STATES, np.moveaxis(x, -1, 0), strict=True))
-    vehicle, hands = state.world.vehicle, state.driver.arm
+    vehicle, hands = state.world.vehicle, state.arm
     aim = vehicle.lateral_position + parameters.driver.tracking.lane_bias
     moved = vehicle._replace(
         lateral_position=aim + at["lateral_position"],
@@ -93,7 +95,8 @@ def _displaced(parameters: LoopParameters[Any], x: Signal) -> LoopState[Any]:
     return state._replace(
         control=command,
         world=state.world._replace(vehicle=moved, column=wheel),
-        driver=state.driver._replace(vision=eyes, arm=arms),
+        driver=state.driver._replace(vision=eyes),
+        arm=arms,
     )
 
 
@@ -120,7 +123,8 @@ def _after_a_step(parameters: LoopParameters[Any], x: Signal, gain: Real) -> Sig
     state = _displaced(parameters, x)
     noise = DriverNoise(*quiet(1)[0].tolist())
     measurement = sense(parameters, state)
-    driver, action = drive(parameters, state, measurement, noise)
+    law = law_of(VIRTUAL)
+    driver, action = drive(law, parameters, state, measurement, noise)
     command: Any = 0.0  # Any: a number, or an array of them
     if gain > 0.0:
         aim = parameters.driver.tracking.lane_bias

@@ -136,7 +136,7 @@ def offset_run(parameters: LoopParameters[Any], offset: Real = OFFSET) -> Signal
         parameters: Of a manual trial on an empty road.
         offset: From the driver's aim at the start [m].
     """
-    bias = parameters.driver.tracking.lane_bias
+    bias: float = parameters.driver.tracking.lane_bias
     start = parameters.start._replace(lateral_offset=bias + offset)
     rows = rollout(
         MANUAL,

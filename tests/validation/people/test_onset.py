@@ -7,7 +7,8 @@ import math
 import numpy as np
 import pytest
 
-from costeer.drivers.driver import NORMAL_DRAWS, DriverNoise, DriverParameters
+from costeer.drivers.driver import DriverParameters
+from costeer.drivers.interface import NORMAL_DRAWS, DriverNoise
 from costeer.drivers.population import hands_off, participant_driver
 from costeer.loop.parameters import DT
 from costeer.validation.people.onset import (

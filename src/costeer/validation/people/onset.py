@@ -19,12 +19,13 @@ from costeer.base.array import Real
 from costeer.controller.actuation import ActuationParameters
 from costeer.controller.signals import Request
 from costeer.controller.step import ControllerParameters
-from costeer.drivers.driver import DriverNoise, DriverParameters
+from costeer.drivers.driver import DriverParameters
+from costeer.drivers.interface import DriverNoise
 from costeer.drivers.population import participant_driver
 from costeer.loop.noise import driver_noise
 from costeer.loop.parameters import DT, LoopParameters, StartParameters
+from costeer.loop.rows import rules_of
 from costeer.loop.step import LoopState, initial_state, sense, step
-from costeer.methods.interface import rule_of
 from costeer.methods.manual import MANUAL
 from costeer.validation.people.findings import Values
 from costeer.validation.people.leeds import HEADINGS
@@ -107,13 +108,13 @@ def steering_onset(
         ),
         start=StartParameters(speed=speed, lateral_offset=0.0, events=0.0),
     )
-    rule = rule_of(MANUAL)
-    state = _turned(initial_state(rule, parameters), heading_error)
+    rules = rules_of(MANUAL)
+    state = _turned(initial_state(rules, parameters), heading_error)
     angles = [state.world.column.steering_wheel_angle]
     for row in noise[:-1]:
         now = DriverNoise(*map(float, row))
         seen = sense(parameters, state)
-        state, _ = step(rule, parameters, state, seen, Request(), now)
+        state, _ = step(rules, parameters, state, seen, Request(), now)
         angles.append(state.world.column.steering_wheel_angle)
     return correction(-math.copysign(1.0, heading_error) * np.array(angles))
 
