@@ -26,6 +26,8 @@ if TYPE_CHECKING:
     from costeer.api.trials import parameters, simulate, study
     from costeer.base.array import compiled
     from costeer.drivers.driver import DriverParameters as Driver
+    from costeer.drivers.interface import DriverModel
+    from costeer.drivers.replayed import replayed_hands
     from costeer.intention.predictors.interface import Predictor
     from costeer.methods.interface import Method
     from costeer.records.columns import Column
@@ -37,6 +39,7 @@ moved.install()
 __all__ = [
     "Column",
     "Driver",
+    "DriverModel",
     "Method",
     "Predictor",
     "Record",
@@ -48,6 +51,7 @@ __all__ = [
     "measures",
     "parameters",
     "population",
+    "replayed_hands",
     "sdlp",
     "simulate",
     "steering_wheel_reversal_rate",
@@ -60,6 +64,7 @@ __version__ = version("costeer")
 _PLACES = {
     "Column": "records.columns:Column",
     "Driver": "drivers.driver:DriverParameters",
+    "DriverModel": "drivers.interface:DriverModel",
     "Method": "methods.interface:Method",
     "Predictor": "intention.predictors.interface:Predictor",
     "Record": "records.columns:TrialRecord",
@@ -70,6 +75,7 @@ _PLACES = {
     "measures": "api.measuring:measures",
     "parameters": "api.trials:parameters",
     "population": "api.people:population",
+    "replayed_hands": "drivers.replayed:replayed_hands",
     "sdlp": "api.measuring:sdlp",
     "simulate": "api.trials:simulate",
     "steering_wheel_reversal_rate": "api.measuring:steering_wheel_reversal_rate",

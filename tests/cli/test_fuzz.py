@@ -72,7 +72,7 @@ def command(kind: str, file: Path, out: Path) -> list[str]:
     simulate = ["simulate", "--engine", "python", "--length", "100", "--out", str(out)]
     return {
         "car": ["parameters", "mass", "--car", str(file)],
-        "driver": [*simulate, "--intention", "off", "--driver-file", str(file)],
+        "driver": [*simulate, "--intention", "off", "--driver", str(file)],
         "weights": [*simulate, "--weights", str(file)],
         "study": ["report", str(file.parent)],
         "csv": ["analyse", str(file)],

@@ -116,7 +116,7 @@ def files(tmp_path_factory: pytest.TempPathFactory) -> Path:
         ("--car bomb.yaml", "a is "),
         ("--car missing.yaml", "missing.yaml: No such file"),
         ("--car lorry", "car 'lorry' is not known"),
-        ("--driver-file field.yaml", "there is no parameter 'mass'"),
+        ("--driver field.yaml", "there is no parameter 'mass'"),
         ("--parameters bomb.yaml", "bomb.yaml: a is "),
         ("--set guidance.lateral_gain=1", "did you mean guidance.lateral_error_gain"),
         ("--set guidance.lateral_error_gain=9e9", "give a number from 0 to"),
@@ -133,7 +133,6 @@ def files(tmp_path_factory: pytest.TempPathFactory) -> Path:
         ("--intention off --weights fits.onnx", "intention 'off' asks no predictor"),
         ("--predictor gur --weights fits.onnx", "do not go together"),
         ("--predictor sure.py --weights fits.onnx", "do not go together"),
-        ("--driver hands-off --driver-file d.yaml", "are two drivers; give one"),
     ],
 )
 def test_it_is_refused_in_one_line(

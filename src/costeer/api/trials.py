@@ -8,15 +8,15 @@ from __future__ import annotations
 import math
 import os
 from collections.abc import Iterable, Mapping, Sequence
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 from costeer.api.recordings import File, by_name
 from costeer.drivers.driver import DriverParameters
+from costeer.drivers.interface import DriverModel
 from costeer.intention.predictors.chosen import Judge
 from costeer.intention.predictors.interface import Predictor
 from costeer.intention.predictors.registry import OURS
-from costeer.loop.inputs import car_of, read_driver
+from costeer.loop.inputs import car_of, driver_of
 from costeer.loop.overrides import METHOD, parameter_list
 from costeer.loop.scenario import TrialSetup, loop_parameters
 from costeer.loop.tick import PREDICTION_HORIZON
@@ -31,7 +31,7 @@ from costeer.study.run import StudyOutcome, full_report, run_study
 if TYPE_CHECKING:
     from pandas import DataFrame
 
-Drivers: TypeAlias = File | DriverParameters
+Drivers: TypeAlias = File | DriverParameters | DriverModel[Any, Any]
 
 SUGGESTED_SPEED = 70.0 / 3.6
 """About 70 km/h, Sec. III-B [m/s]."""
@@ -45,7 +45,7 @@ def simulate(
     participant: int = 1,
     intention: str = "network",
     method: File | AnyMethod = "ibhs",
-    driver: File | DriverParameters = "virtual",
+    driver: Drivers = "virtual",
     parameters: Mapping[str, float] | None = None,
     predictor: File | Predictor | Judge = OURS,
     weights: File | None = None,
@@ -73,7 +73,9 @@ def simulate(
         participant: Number of the driver in the population.
         intention: "network", "scripted" (the driver's own plan) or "off".
         method: A method, its name, "module:object" or "file.py".
-        driver: "virtual", "hands-off", a driver, or the file of one, "NAME.yaml".
+        driver: "virtual", "hands-off", a driver, or the file of one, "NAME.yaml"; a
+            driver model, its file or place; a record, "NAME.parquet", whose hands
+            are replayed.
         parameters: Dotted names and numbers; `costeer.parameters()` lists them.
         predictor: Of crossings: its name or place, a `Predictor`, or a function from
             the last window, shape `(180, 6)`, to a probability.
@@ -108,7 +110,7 @@ def simulate(
     """
     given = locals()
     given |= {
-        "driver": _driver(driver),
+        "driver": driver_of(by_name(driver)),
         "car": _car(car),
         "method": by_name(method),
         "predictor": by_name(predictor),
@@ -119,14 +121,6 @@ def simulate(
     return simulate_trial(
         TrialSetup(**{n: given[n] for n in TrialSetup._fields}), engine
     )
-
-
-def _driver(driver: File | DriverParameters) -> str | DriverParameters:
-    """A driver, or who is of that name or in that file."""
-    if isinstance(driver, DriverParameters):
-        return driver
-    name = os.fspath(driver)
-    return read_driver(Path(name)) if name.endswith((".yaml", ".yml")) else name
 
 
 def _car(car: File | CarParameters) -> str | CarParameters:
@@ -226,7 +220,7 @@ def _conditions(given: str | Iterable[str]) -> tuple[str, ...]:
 
 def _several(
     drivers: Drivers | Sequence[Drivers], driver: Drivers | None
-) -> tuple[str | DriverParameters, ...]:
+) -> tuple[str | DriverParameters | DriverModel[Any, Any], ...]:
     """The drivers of a study, whether one or several were given.
 
     Raises:
@@ -235,7 +229,7 @@ def _several(
     if driver is not None and drivers:
         raise ValueError("driver and drivers are given; give one of them")
     given: Any = drivers if driver is None else driver  # Any: checked by the study
-    one = isinstance(given, str | os.PathLike | DriverParameters)
+    one = isinstance(given, str | os.PathLike | DriverParameters | DriverModel)
     several = given if isinstance(given, Iterable) and not one else (given,)
     return tuple(by_name(each) for each in several)
 

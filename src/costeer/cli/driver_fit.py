@@ -71,7 +71,7 @@ def show_fit(
 
 
 def _write(out: Path, fit: DriverFit, path: Path) -> None:
-    """Write the driver for `--driver-file`, with what the fit was made of."""
+    """Write the driver for `--driver`, with what the fit was made of."""
     from costeer.drivers.population import POPULATION_VERSION
     from costeer.loop.inputs import write_driver
 
@@ -83,7 +83,7 @@ def _write(out: Path, fit: DriverFit, path: Path) -> None:
         "estimated": [each.name for each in fit.estimates],
     }
     write_driver(out, fit.driver, about)
-    note(f"wrote {out}; drive it with: costeer simulate --driver-file {out}")
+    note(f"wrote {out}; drive it with: costeer simulate --driver {out}")
 
 
 def _draw(plot: Path, fit: DriverFit, record: TrialRecord) -> None:

@@ -17,6 +17,21 @@ Method = Annotated[
 Car = Annotated[
     str, typer.Option(help="default, compact, large, or a FILE.yaml of its own.")
 ]
+_DRIVER = (
+    "virtual, hands-off, a driver of `costeer drivers --fit --out` (FILE.yaml), a "
+    "driver model (module:object or FILE.py), or a record whose hands are replayed "
+    "(FILE.parquet)"
+)
+Driver = Annotated[str, typer.Option("--driver", "--driver-file", help=f"{_DRIVER}.")]
+Drivers = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--driver",
+        "--driver-file",
+        show_default="virtual",
+        help=f"{_DRIVER}; several take turns.",
+    ),
+]
 PredictorName = Annotated[
     str,
     typer.Option(

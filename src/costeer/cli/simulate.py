@@ -37,11 +37,7 @@ def simulate(
         ),
     ] = 70 / 3.6,
     car: plug_ins.Car = "default",
-    driver: Annotated[str, typer.Option(help="virtual or hands-off.")] = "virtual",
-    driver_file: Annotated[
-        Path | None,
-        typer.Option(help="Driver of `costeer drivers --fit --out`, FILE.yaml."),
-    ] = None,
+    driver: plug_ins.Driver = "virtual",
     intention: Annotated[
         str, typer.Option(help="network, scripted (the driver's own plan) or off.")
     ] = "network",
@@ -74,15 +70,10 @@ def simulate(
         costeer simulate --out out/a.parquet --driver hands-off --trigger-at 20
         costeer simulate --out out/b.parquet --method my_method.py
     """
-    from costeer.loop.inputs import car_of, read_driver
+    from costeer.loop.inputs import car_of, driver_of
     from costeer.loop.scenario import TrialSetup
     from costeer.methods.conditions import condition as condition_named
 
-    if driver_file is not None and driver != "virtual":
-        raise ValueError(
-            f"--driver {driver} and --driver-file {driver_file} are two drivers; give "
-            "one of them"
-        )
     setup = TrialSetup(
         participant=participant,
         seed=seed,
@@ -91,7 +82,7 @@ def simulate(
         length=length,
         speed=speed,
         car=car_of(car),
-        driver=driver if driver_file is None else read_driver(driver_file),
+        driver=driver_of(driver),
         intention=intention,
         predictor=predictor,
         weights=plug_ins.weights_path(weights),

@@ -49,12 +49,7 @@ def study(
         ),
     ] = 70 / 3.6,
     car: plug_ins.Car = "default",
-    driver_file: Annotated[
-        list[Path] | None,
-        typer.Option(
-            help="Driver of `costeer drivers --fit --out`; several take turns."
-        ),
-    ] = None,
+    driver: plug_ins.Drivers = None,
     predictor: plug_ins.PredictorName = "gru",
     weights: plug_ins.Weights = None,
     assignments: plug_ins.Assignments = None,
@@ -89,7 +84,7 @@ def study(
             car=car,
             predictor=predictor,
             weights=plug_ins.weights_path(weights) or "",
-            drivers=tuple(map(str, driver_file or ())),
+            drivers=tuple(driver or ()),
             parameters=plug_ins.chosen_values(parameters, assignments),
         )
     )

@@ -40,8 +40,8 @@ def checked_driver(driver: Any) -> AnyDriver:  # Any: of whoever made it
     """
     if not isinstance(driver, DriverModel):
         raise ValueError(
-            f"{driver!r} is no driver model; make one with "
-            "costeer.DriverModel(name=..., ...)"
+            f"driver is {driver!r}; give a name, parameters, or a driver model made "
+            "with costeer.DriverModel(name=..., ...)"
         )
     return _checked(driver)
 

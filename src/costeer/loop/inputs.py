@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, TypeAlias, TypeVar
 
 import yaml
 
@@ -17,9 +17,16 @@ from costeer.base.array import Real
 from costeer.base.described import described, with_values
 from costeer.base.files import read_whole, write_text
 from costeer.drivers.driver import DriverParameters
+from costeer.drivers.interface import AnyDriver
+from costeer.drivers.population import VIRTUAL
+from costeer.drivers.registry import driver_named
+from costeer.drivers.replayed import replayed_hands
 from costeer.plant.parameters import CARS, CarParameters
+from costeer.records.record import read_record
 
 Record = TypeVar("Record")
+Driver: TypeAlias = DriverParameters | AnyDriver
+"""Who holds the wheel, as an object."""
 
 ABOUT = "about"
 """Key of a file under which anything may stand that is no parameter."""
@@ -110,6 +117,28 @@ def read_driver(path: Path) -> DriverParameters:
         OSError: If it cannot be read.
     """
     return _filled(DriverParameters(), path)
+
+
+def driver_of(given: str | Driver) -> Driver | str:
+    """Who holds the wheel: a name, or what is in a file or at a place.
+
+    Args:
+        given: A name; parameters of a virtual driver or their file, `NAME.yaml`; a
+            driver model or where it is, `FILE.py` or `module:object`; a record,
+            `FILE.parquet`, whose hands are replayed.
+
+    Raises:
+        ValueError: If there is no such driver.
+        OSError: If the file cannot be read.
+    """
+    if not isinstance(given, str):
+        return given
+    if given.endswith((".yaml", ".yml")):
+        return read_driver(Path(given))
+    if given.endswith(".parquet"):
+        return replayed_hands(read_record(Path(given)))
+    model = driver_named(given)
+    return given if model is VIRTUAL else model
 
 
 def _filled(usual: Record, path: Path) -> Record:

@@ -6,6 +6,7 @@ plain Python, and traced by JAX. Each method has machine code of its own.
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 from typing import Any, Protocol
 
@@ -14,8 +15,8 @@ from numba.core import errors
 from numpy.typing import NDArray
 
 from costeer.base.entry import entry_for
-from costeer.base.packing import pack, packed, unpack
-from costeer.drivers.interface import AnyDriver, Draw, DriverLaw
+from costeer.base.packing import layout_of, pack, packed, unpack
+from costeer.drivers.interface import AnyDriver, DriverLaw, law_of
 from costeer.drivers.population import VIRTUAL
 from costeer.loop.jax_rollout import jax_rollout
 from costeer.loop.parameters import LoopParameters
@@ -50,11 +51,11 @@ class Advance(Protocol):
 
 
 def _compiled_trial(
-    method: Method[P, S], driver: AnyDriver
-) -> Any:  # Any: a compiled function of Numba
+    method: Method[P, S], driver: AnyDriver, hands: Any
+) -> Any:  # Any: parameters of the driver; a compiled function of Numba
     """The compiled trial of both; its machine code lies in a folder of their own."""
     ((begin, step), (sit, act)), fill = loop_rule(method, driver)
-    like = LoopParameters(usual_parameters(method), driver=driver.parameters(Draw()))
+    like = LoopParameters(usual_parameters(method), driver=hands)
     like_state = initial_state(rules_of(method, driver), like)
 
     def run_packed(
@@ -103,11 +104,13 @@ def begun(
     if engine != "numba":
         raise ValueError(f"engine '{engine}' is not known; choose numba, python or jax")
     numbers, memory = packed(parameters), packed(state)
+    seat = law_of(driver), layout_of(parameters.driver)
+    make = partial(_compiled_trial, driver=driver, hands=parameters.driver)
 
     def advance(script: Script, noise: Rows, rows: Rows, keep: bool = True) -> int:
         now = memory if keep else memory.copy()
         try:
-            trial = compiled_once(_compiled_trial, method, driver)
+            trial = compiled_once(make, method, *seat)
             count: int = trial(numbers, now, script, network, noise, rows)
         except errors.NumbaError as error:
             raise ValueError(cannot_compile(_whose(method, driver), error)) from error

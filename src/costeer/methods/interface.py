@@ -7,7 +7,7 @@ are pure and marked `compiled`, so that every engine runs them.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Hashable
 from functools import cache
 from typing import Any, Generic, NamedTuple, TypeVar
 
@@ -131,20 +131,26 @@ _COMPILED: dict[tuple[Any, ...], Any] = {}
 
 
 def compiled_once(
-    make: Callable[..., Any], method: Method[P, S], *others: tuple[Any, ...]
-) -> Any:
+    make: Callable[[Method[P, S]], Any], method: Method[P, S], *others: Hashable
+) -> Any:  # Any: a compiled function of Numba
     """What `make` compiles for a method, made once for all that share its rule.
 
     Args:
-        make: Called with the method and the others.
+        make: Called with the method; a partial is known by its function.
         method: Whose functions are compiled.
-        *others: What else is compiled in.
+        *others: What else decides the machine code.
 
     `manual` runs the paper's controller in the shadow: it needs no code of its own.
     """
-    key = (make, rule_of(method), method.columns, _layout(method), *others)
+    key = (
+        getattr(make, "func", make),
+        rule_of(method),
+        method.columns,
+        _layout(method),
+        *others,
+    )
     if key not in _COMPILED:
-        _COMPILED[key] = make(method, *others)
+        _COMPILED[key] = make(method)
     return _COMPILED[key]
 
 

@@ -16,11 +16,13 @@ from typing import Any, NamedTuple
 from costeer.base.described import described
 from costeer.base.entry import COMPILED_ROOMS
 from costeer.controller.step import ControllerParameters
+from costeer.drivers.checked import checked_driver
 from costeer.drivers.driver import DriverParameters
+from costeer.drivers.interface import DriverModel, driver_sources
 from costeer.intention.predictors.chosen import Judge, chosen_predictor
 from costeer.intention.predictors.interface import Predictor
 from costeer.intention.predictors.registry import OURS
-from costeer.loop.inputs import car_of, read_driver
+from costeer.loop.inputs import Driver, car_of, driver_of
 from costeer.loop.scenario import (
     TrialSetup,
     check_setup,
@@ -76,7 +78,7 @@ class StudySettings(NamedTuple):
     car: str | CarParameters = "default"
     predictor: str | Predictor | Judge = OURS
     weights: str = ""
-    drivers: tuple[str | DriverParameters, ...] = ()
+    drivers: tuple[str | Driver, ...] = ()
     parameters: tuple[tuple[str, float], ...] = ()
 
 
@@ -116,9 +118,7 @@ def _plain_settings(settings: StudySettings) -> StudySettings:
         speed=plain_number("speed", settings.speed, "m/s"),
         weights=plain_text("weights", settings.weights),
         car=plain_part("car", settings.car, CarParameters),
-        drivers=tuple(
-            plain_part("driver", each, DriverParameters) for each in settings.drivers
-        ),
+        drivers=tuple(map(_plain_driver, settings.drivers)),
         parameters=plain_values(settings.parameters),
     )
 
@@ -174,7 +174,7 @@ def with_files_read(settings: StudySettings) -> StudySettings:
         OSError: If it cannot be read.
     """
     return settings._replace(
-        car=_car(settings.car), drivers=tuple(map(_driver_in, settings.drivers))
+        car=_car(settings.car), drivers=tuple(map(driver_of, settings.drivers))
     )
 
 
@@ -182,17 +182,22 @@ def _car(car: str | CarParameters) -> str | CarParameters:
     return car_of(car) if isinstance(car, str) else car
 
 
-def _driver_in(driver: str | DriverParameters) -> DriverParameters:
-    return read_driver(Path(driver)) if isinstance(driver, str) else driver
+def _plain_driver(driver: str | Driver) -> str | Driver:
+    """A driver model as it is, parameters in plain numbers.
+
+    Raises:
+        ValueError: If it is neither.
+    """
+    if isinstance(driver, DriverModel):
+        return checked_driver(driver)
+    return plain_part("driver", driver, DriverParameters)
 
 
-def _driver(
-    drivers: tuple[str | DriverParameters, ...], participant: int
-) -> str | DriverParameters:
+def _driver(drivers: tuple[str | Driver, ...], participant: int) -> str | Driver:
     """Who drives as a participant: of the population, or one driver after another."""
     if not drivers:
         return "virtual"
-    return _driver_in(drivers[(participant - 1) % len(drivers)])
+    return driver_of(drivers[(participant - 1) % len(drivers)])
 
 
 def study_configuration(settings: StudySettings) -> dict[str, object]:
@@ -221,8 +226,10 @@ def study_configuration(settings: StudySettings) -> dict[str, object]:
     }
 
 
-def _named(part: str | CarParameters | DriverParameters) -> str:
-    """A name or file; of an object only that it is one, its values stand apart."""
+def _named(part: str | CarParameters | Driver) -> str:
+    """A name or file; of parameters only that they are, their values stand apart."""
+    if isinstance(part, DriverModel):
+        return part.name
     return part if isinstance(part, str) else OWN
 
 
@@ -238,7 +245,6 @@ def _plugged_in(settings: StudySettings, method: AnyMethod) -> dict[str, object]
     """What came from outside costeer, so that its results can be told from others."""
     setup = trial_setup(settings, Trial(1, CONDITION_NAMES[1], 1))
     predictor = trial_predictor(setup)
-    drivers = [_driver_in(each) for each in settings.drivers]
     car = setup.car
     return {
         "method_name": method.name,
@@ -246,10 +252,21 @@ def _plugged_in(settings: StudySettings, method: AnyMethod) -> dict[str, object]
         "method_source_hash": method_sources(method),
         "intention_model_hash": None if predictor is None else predictor.hash,
         "car_parameters": None if isinstance(car, str) else car._asdict(),
-        "driver_parameters": [
-            {each.name: each.value for each in described(driver)} for driver in drivers
-        ],
+        "driver_parameters": [_told(driver_of(each)) for each in settings.drivers],
     }
+
+
+def _told(driver: str | Driver) -> dict[str, object]:
+    """What decides what a driver does: parameters, or a model's version and sources."""
+    if isinstance(driver, str):
+        return {"name": driver}
+    if isinstance(driver, DriverModel):
+        return {
+            "name": driver.name,
+            "version": driver.version,
+            "source_hash": driver_sources(driver),
+        }
+    return {each.name: each.value for each in described(driver)}
 
 
 def differences(configuration: Mapping[str, Any]) -> list[tuple[str, str, str]]:

@@ -183,7 +183,7 @@ def _objects(settings: StudySettings) -> list[str]:
 def _option(name: str, value: Any) -> list[str]:  # Any: of a setting
     """A setting as words of the command line."""
     if name == "drivers":
-        return [word for file in value for word in ("--driver-file", file)]
+        return [word for file in value for word in ("--driver", file)]
     if name == "parameters":
         return [w for place, number in value for w in ("--set", f"{place}={number!r}")]
     return [f"--{name}", ",".join(value) if name == "conditions" else str(value)]
