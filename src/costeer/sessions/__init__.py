@@ -1,0 +1,1 @@
+"""A study with people: plan, order, answers, attempts, and what comes next."""

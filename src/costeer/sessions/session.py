@@ -1,0 +1,453 @@
+"""A study in its folder: who takes part, what comes next, what was said and driven.
+
+The state is what the store holds. Nothing is changed without being written first, so
+that a process that dies at any moment is followed by one that goes on from there.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from costeer.sessions.plan import (
+    DONE,
+    PLAN_FILE,
+    Plan,
+    Step,
+    parsed_plan,
+    plan_hash,
+    session_steps,
+)
+from costeer.sessions.store import OF_PEOPLE, STORE_FILE, Row, Store, now
+
+# Any, in this file: values of answers, facts and measures.
+PSEUDONYM = re.compile(r"[A-Za-z]{0,4}[0-9]{1,4}")
+"""A few letters and a number: nobody is called so."""
+
+ACTIVE, FINISHED, WITHDRAWN, DROPPED = "active", "finished", "withdrawn", "dropped"
+"""How it stands with a participant."""
+
+WHOLE = "finished"
+"""An attempt at a drive that came to its end."""
+
+
+class OutOfStepError(ValueError):
+    """What was asked is for another step than the one that is on."""
+
+
+class Standing(NamedTuple):
+    """Where a participant stands.
+
+    Attributes:
+        participant: Pseudonym.
+        step: That is on.
+        number: Of the step, from 1.
+        of: Steps without the last.
+        attempts: Of the step.
+    """
+
+    participant: str
+    step: Step
+    number: int
+    of: int
+    attempts: tuple[Row, ...]
+
+
+class Session:
+    """A study with people.
+
+    Args:
+        folder: Of the study.
+
+    Raises:
+        ValueError: If there is no plan, or it cannot be.
+        OSError: If a file cannot be read or written.
+    """
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+        plan_file = folder / PLAN_FILE
+        if not plan_file.is_file():
+            raise ValueError(
+                f"{folder} is no study with people: it has no {PLAN_FILE}; make one "
+                f"with: costeer session new {folder}"
+            )
+        self._text = plan_file.read_text("utf-8")
+        self.plan = parsed_plan(self._text, str(plan_file))
+        self.store = Store(folder / STORE_FILE)
+        self._plans: dict[int, Plan] = {}
+        self._steps: dict[str, tuple[Step, ...]] = {}
+        self.plan_version = self._known_plan()
+
+    def close(self) -> None:
+        """Close the store."""
+        self.store.close()
+
+    # Plans
+
+    def _known_plan(self) -> int:
+        """Version of the plan of the file, kept when it is new."""
+        digest = plan_hash(self.plan)
+        found = self.store.rows("SELECT version FROM plans WHERE hash = ?", digest)
+        if found:
+            return int(found[0]["version"])
+        (last,) = self.store.rows("SELECT coalesce(max(version), 0) AS n FROM plans")
+        version = int(last["n"]) + 1
+        with self.store.transaction():
+            self.store.put(
+                "plans",
+                {
+                    "version": version,
+                    "hash": digest,
+                    "text": self._text,
+                    "utc": now().utc,
+                },
+            )
+            self.store.tell("plan", f"version {version}", data={"hash": digest})
+        return version
+
+    def plan_of(self, participant: str) -> Plan:
+        """The plan that a participant began with."""
+        version = int(self._person(participant)["plan"])
+        if version not in self._plans:
+            rows = self.store.rows("SELECT text FROM plans WHERE version = ?", version)
+            self._plans[version] = parsed_plan(rows[0]["text"], f"plan {version}")
+        return self._plans[version]
+
+    def steps_of(self, participant: str) -> tuple[Step, ...]:
+        """All steps of a participant."""
+        if participant not in self._steps:
+            slot = int(self._person(participant)["slot"])
+            self._steps[participant] = session_steps(self.plan_of(participant), slot)
+        return self._steps[participant]
+
+    # People
+
+    def people(self) -> list[Row]:
+        """Participants in the order in which they came."""
+        return self.store.rows("SELECT * FROM participants ORDER BY utc, participant")
+
+    def _person(self, participant: str) -> Row:
+        """A participant.
+
+        Raises:
+            ValueError: If there is none.
+        """
+        found = self.store.rows(
+            "SELECT * FROM participants WHERE participant = ?", participant
+        )
+        if not found:
+            raise ValueError(
+                f"there is no participant '{participant}'; the experimenter begins one"
+            )
+        return found[0]
+
+    def free_slot(self) -> int:
+        """The first slot that nobody holds: a dropout's before a new one."""
+        held = {
+            int(row["slot"])
+            for row in self.people()
+            if row["status"] in (ACTIVE, FINISHED)
+        }
+        return next(slot for slot in range(1, len(held) + 2) if slot not in held)
+
+    def begin(self, participant: str, language: str = "") -> Standing:
+        """Let a participant take part, or go on where they stopped.
+
+        Args:
+            participant: Pseudonym.
+            language: Of the texts; the plan's if empty.
+
+        Raises:
+            ValueError: If it is no pseudonym, or who bears it has ended.
+            StoreError: If it cannot be written.
+        """
+        if not PSEUDONYM.fullmatch(participant):
+            raise ValueError(
+                f"participant is {participant[:40]!r}; give a pseudonym: up to four "
+                "letters and a number, as P01. Names do not belong here"
+            )
+        known = [row for row in self.people() if row["participant"] == participant]
+        if known and known[0]["status"] in (WITHDRAWN, DROPPED):
+            raise ValueError(
+                f"participant {participant} has {known[0]['status']}; give another "
+                "pseudonym"
+            )
+        with self.store.transaction():
+            if not known:
+                self.store.put(
+                    "participants",
+                    {
+                        "participant": participant,
+                        "slot": self.free_slot(),
+                        "plan": self.plan_version,
+                        "language": language or self.plan.language,
+                        "status": ACTIVE,
+                        **now()._asdict(),
+                    },
+                )
+            self.store.tell("resumed" if known else "began", participant=participant)
+        return self.standing(participant)
+
+    def language_of(self, participant: str) -> str:
+        """Language of a participant's texts."""
+        return str(self._person(participant)["language"])
+
+    def drop(self, participant: str, reason: str) -> None:
+        """Count a participant out; the data stay, the slot is free for another.
+
+        Raises:
+            ValueError: If there is none, or no reason.
+            StoreError: If it cannot be written.
+        """
+        row = self._person(participant) | {
+            "status": DROPPED,
+            "reason": told_reason(reason),
+        }
+        with self.store.transaction():
+            self.store.put("participants", row)
+            self.store.tell("dropped", told, participant)
+
+    def withdraw(self, participant: str) -> int:
+        """Delete all of a participant: rows, files, free pages; a count stays.
+
+        Returns:
+            How many files were deleted.
+
+        Raises:
+            ValueError: If there is none.
+            OSError: If something could not be deleted.
+        """
+        self._person(participant)
+        removed = 0
+        for file in self.files_of(participant):
+            file.unlink()
+            removed += 1
+        self.store.forget(participant)
+        self._steps.pop(participant, None)
+        return removed
+
+    def files_of(self, participant: str) -> list[Path]:
+        """Every file of a participant's drives, streams and traces too."""
+        found = []
+        for room in ("records", "practice", "aborted", "answers"):
+            found += sorted((self.folder / room).glob(f"{participant}-*"))
+        return [file for file in found if file.is_file()]
+
+    # Steps
+
+    def over(self, participant: str) -> dict[str, Row]:
+        """Steps that are finished or skipped."""
+        rows = self.store.rows("SELECT * FROM steps WHERE participant = ?", participant)
+        return {row["step"]: row for row in rows}
+
+    def standing(self, participant: str) -> Standing:
+        """Where a participant stands: at the first step that is not over.
+
+        Raises:
+            ValueError: If there is none.
+        """
+        steps, over = self.steps_of(participant), self.over(participant)
+        place = next(
+            (n for n, each in enumerate(steps) if each.id not in over), len(steps) - 1
+        )
+        step = steps[place]
+        attempts = self.store.rows(
+            "SELECT * FROM attempts WHERE participant = ? AND step = ? "
+            "ORDER BY attempt",
+            *(participant, step.id),
+        )
+        return Standing(participant, step, place + 1, len(steps) - 1, tuple(attempts))
+
+    def on(self, participant: str, step: str) -> Step:
+        """The step that is on, if it is that one.
+
+        Raises:
+            OutOfStepError: If another is on.
+        """
+        on = self.standing(participant).step
+        if on.id != step:
+            raise OutOfStepError(
+                f"step '{step}' is not on; {participant} stands at '{on.id}'"
+            )
+        return on
+
+    def finish(self, participant: str, step: str, reason: str = "") -> None:
+        """Take a step as done; one that is done already stays so.
+
+        Raises:
+            OutOfStepError: If another is on.
+            StoreError: If it cannot be written.
+        """
+        if self.over(participant).get(step, {}).get("state") == "finished":
+            return
+        self.on(participant, step)
+        with self.store.transaction():
+            self.set_over(participant, step, "finished", reason)
+
+    def skip(self, participant: str, step: str, reason: str) -> None:
+        """Leave a step out, for a reason.
+
+        Raises:
+            OutOfStepError: If another is on.
+            ValueError: If there is no reason.
+            StoreError: If it cannot be written.
+        """
+        self.on(participant, step)
+        with self.store.transaction():
+            self.set_over(participant, step, "skipped", told_reason(reason))
+
+    def set_over(self, participant: str, step: str, state: str, reason: str) -> None:
+        """Write that a step is over, within a transaction."""
+        self.store.put(
+            "steps",
+            {
+                "participant": participant,
+                "step": step,
+                "state": state,
+                "reason": reason,
+                **now()._asdict(),
+            },
+        )
+        self.store.tell(f"step {state}", reason, participant, step)
+        ids = [each.id for each in self.steps_of(participant)]
+        done = {step, *self.over(participant)}
+        if all(each in done for each in ids if each != DONE.id):
+            row = self._person(participant) | {"status": FINISHED}
+            self.store.put("participants", row)
+            self.store.tell("finished", participant=participant)
+
+    def repeat(self, participant: str, step: str, reason: str) -> None:
+        """Have a step done again that is over; what it left stays, attempts excluded.
+
+        Raises:
+            ValueError: If there is none of that name, or no reason.
+            StoreError: If it cannot be written.
+        """
+        told = told_reason(reason)
+        known = {each.id: each for each in self.steps_of(participant)}
+        if step not in known or step == DONE.id:
+            raise ValueError(f"{participant} has no step '{step}'")
+        with self.store.transaction():
+            self.store.run(
+                "DELETE FROM steps WHERE participant = ? AND step = ?",
+                *(participant, step),
+            )
+            self.store.run(
+                "UPDATE attempts SET excluded = 1, reason = ? WHERE participant = ? "
+                "AND step = ? AND state = ?",
+                *(told, participant, step, WHOLE),
+            )
+            self.store.run(
+                "DELETE FROM answers WHERE participant = ? AND step = ?",
+                *(participant, step),
+            )
+            row = self._person(participant) | {"status": ACTIVE}
+            self.store.put("participants", row)
+            self.store.tell("repeat", told, participant, step)
+
+    # Answers
+
+    def answer(
+        self,
+        participant: str,
+        step: str,
+        answers: Mapping[str, Any],
+        instrument: tuple[str, str],
+    ) -> None:
+        """Keep the answers of a step and go on.
+
+        Args:
+            participant: Who answers.
+            step: That they are for.
+            answers: Item to value, checked before.
+            instrument: Name and version.
+
+        Raises:
+            OutOfStepError: If another step is on, or other answers were given.
+            StoreError: If they cannot be written.
+        """
+        if step in self.over(participant):
+            if self.answers_of(participant, step) == _texts(answers):
+                return  # sent twice
+            raise OutOfStepError(f"step '{step}' was answered before")
+        on = self.on(participant, step)
+        moment, language = now()._asdict(), self.language_of(participant)
+        with self.store.transaction():
+            for item, value in _texts(answers).items():
+                self.store.put(
+                    "answers",
+                    {
+                        "participant": participant,
+                        "step": step,
+                        "condition": on.condition,
+                        "instrument": instrument[0],
+                        "version": instrument[1],
+                        "language": language,
+                        "item": item,
+                        "value": value,
+                        **moment,
+                    },
+                )
+            self.set_over(participant, step, "finished", "")
+
+    def answers_of(self, participant: str, step: str) -> dict[str, str]:
+        """What was answered at a step, each value as JSON."""
+        rows = self.store.rows(
+            "SELECT item, value FROM answers WHERE participant = ? AND step = ?",
+            *(participant, step),
+        )
+        return {row["item"]: row["value"] for row in rows}
+
+    # The log
+
+    def note(self, participant: str, text: str) -> None:
+        """Keep a note of the experimenter.
+
+        Raises:
+            ValueError: If it is empty or too long.
+            StoreError: If it cannot be written.
+        """
+        told = text.strip()
+        if not 0 < len(told) <= 2000:
+            raise ValueError("a note has 1 to 2,000 characters")
+        step = self.standing(participant).step.id if participant else ""
+        with self.store.transaction():
+            self.store.tell("note", told, participant, step)
+
+    def num_withdrawn(self) -> int:
+        """How many have withdrawn; who they were is not known any more."""
+        return len(self.store.rows("SELECT number FROM withdrawn"))
+
+    def num_rows_of(self, participant: str) -> int:
+        """Rows that the store holds of a participant."""
+        return sum(
+            len(
+                self.store.rows(
+                    f"SELECT 1 FROM {table} WHERE participant = ?", participant
+                )
+            )
+            for table in OF_PEOPLE
+        )
+
+
+def told_reason(reason: str) -> str:
+    """A reason, if it is one.
+
+    Raises:
+        ValueError: If it is empty.
+    """
+    told = " ".join(reason.split())
+    if not told:
+        raise ValueError("give a reason; it stands in the log of exclusions")
+    return told[:500]
+
+
+def _texts(answers: Mapping[str, Any]) -> dict[str, str]:
+    """Each value as JSON: numbers and texts stay apart."""
+    return {
+        item: json.dumps(value, ensure_ascii=False) for item, value in answers.items()
+    }
