@@ -203,10 +203,8 @@ class Session:
             ValueError: If there is none, or no reason.
             StoreError: If it cannot be written.
         """
-        row = self._person(participant) | {
-            "status": DROPPED,
-            "reason": told_reason(reason),
-        }
+        told = told_reason(reason)
+        row = self._person(participant) | {"status": DROPPED, "reason": told}
         with self.store.transaction():
             self.store.put("participants", row)
             self.store.tell("dropped", told, participant)

@@ -41,16 +41,16 @@ def drive_app(
     """
 
     async def answer_hello(request: Request) -> Response:
-        return _json(hello(session, role_of(access, request)))
+        return json_response(hello(session, role_of(access, request)))
 
     async def answer_socket(websocket: WebSocket) -> None:
-        await _hold(websocket, session, role_of(access, websocket))
+        await hold(websocket, session, role_of(access, websocket))
 
     routes: list[BaseRoute] = [
         Route("/api/hello", answer_hello),
         WebSocketRoute("/ws", answer_socket),
     ]
-    return Guard(_application(routes, folder), access)
+    return Guard(application(routes, folder), access)
 
 
 def replay_app(replay: Replay, access: Access, folder: Path | None = None) -> ASGIApp:
@@ -64,7 +64,7 @@ def replay_app(replay: Replay, access: Access, folder: Path | None = None) -> AS
 
     async def answer_hello(request: Request) -> Response:
         told = {"type": "hello", **replay.hello, "role": role_of(access, request)}
-        return _json(told)
+        return json_response(told)
 
     async def answer_record(request: Request) -> Response:
         return Response(replay.rows, media_type="application/octet-stream")
@@ -73,10 +73,10 @@ def replay_app(replay: Replay, access: Access, folder: Path | None = None) -> AS
         Route("/api/hello", answer_hello),
         Route("/api/record", answer_record),
     ]
-    return Guard(_application(routes, folder), access)
+    return Guard(application(routes, folder), access)
 
 
-def _application(routes: list[BaseRoute], folder: Path | None) -> Starlette:
+def application(routes: list[BaseRoute], folder: Path | None) -> Starlette:
     """Routes of the data, then the page and its files."""
     page = [Route("/", answer_page), Route("/{path:path}", answer_file)]
     app = Starlette(routes=[*routes, *page])
@@ -84,7 +84,8 @@ def _application(routes: list[BaseRoute], folder: Path | None) -> Starlette:
     return app
 
 
-def _json(message: dict[str, object]) -> Response:
+def json_response(message: dict[str, object]) -> Response:
+    """An answer of JSON."""
     return Response(encoded(message), media_type="application/json")
 
 
@@ -97,7 +98,7 @@ def _error(text: object) -> dict[str, object]:
     return {"type": "error", "text": str(text)}
 
 
-async def _hold(websocket: WebSocket, session: DriveSession, role: Role) -> None:
+async def hold(websocket: WebSocket, session: DriveSession, role: Role) -> None:
     """Keep one page's socket until either side ends it."""
     await websocket.accept()
     try:

@@ -177,7 +177,7 @@ def headers_of(host: str) -> dict[str, str]:
             "style-src 'self' 'unsafe-inline'; "
             f"connect-src 'self' ws://{host} wss://{host}; "
             "object-src 'none'; base-uri 'none'; form-action 'none'; "
-            "frame-ancestors 'none'"
+            "frame-ancestors 'self'"
         ),
         "X-Content-Type-Options": "nosniff",
         "Referrer-Policy": "no-referrer",

@@ -1,0 +1,1 @@
+"""What participants are asked: instruments and texts as data, answers, scores."""

@@ -1,0 +1,1 @@
+"""The pages of a study with people: participant's page and experimenter's console."""

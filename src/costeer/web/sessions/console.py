@@ -1,0 +1,249 @@
+"""What the experimenter sees of a session, and what the experimenter can do."""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Callable, Mapping
+from datetime import datetime
+from typing import Any
+
+from costeer.sessions.plan import balance
+from costeer.sessions.session import ACTIVE, FINISHED
+from costeer.sessions.store import now
+from costeer.web.sessions.desk import Desk
+from costeer.web.sessions.step_drive import RUNNING, SAVING
+
+# Any, in this file: of JSON.
+SCARCE = 2_000_000_000
+"""Less free space is told on the console [bytes]: some fifty trials."""
+
+_SHOWN = ("sdlp", "swrr", "driver_torque_rms", "num_lane_changes", "mean_speed")
+"""Measures that stand in the console's list of trials."""
+
+
+class Console:
+    """The experimenter's side of a desk.
+
+    Args:
+        desk: Of the session.
+    """
+
+    def __init__(self, desk: Desk) -> None:
+        self._desk, self._session = desk, desk.session
+
+    def shown(self) -> dict[str, Any]:
+        """Everything the console shows."""
+        with self._desk.lock:
+            state = self._desk.state()
+            step = state["step"]
+            if step is not None:
+                step.pop("instrument", None)
+            free = shutil.disk_usage(self._session.folder).free
+            return {
+                "type": "console",
+                "title": state["title"],
+                "now": now().utc,
+                "zone": datetime.now().astimezone().tzname(),
+                "participant": state["participant"],
+                "step": step,
+                "steps": self._all_steps(),
+                "people": self._people(),
+                "planned": self._session.plan.participants,
+                "withdrawn": self._session.num_withdrawn(),
+                "attempts": self._attempts(),
+                "checks": self._desk.checked,
+                "disk": {"free": free, "enough": free > SCARCE},
+                "balance": self._balance(),
+                "trouble": self._desk.trouble,
+                "events": self._events(),
+            }
+
+    def _all_steps(self) -> list[dict[str, Any]]:
+        if not self._desk.participant:
+            return []
+        over = self._session.over(self._desk.participant)
+        return [
+            {
+                "id": each.id,
+                "kind": each.kind,
+                "condition": each.condition,
+                "state": over.get(each.id, {}).get("state", ""),
+            }
+            for each in self._session.steps_of(self._desk.participant)
+        ]
+
+    def _people(self) -> list[dict[str, Any]]:
+        told = []
+        for row in self._session.people():
+            standing = self._session.standing(row["participant"])
+            told.append(
+                {
+                    "participant": row["participant"],
+                    "slot": row["slot"],
+                    "status": row["status"],
+                    "reason": row["reason"],
+                    "step": standing.step.id,
+                    "number": standing.number,
+                    "of": standing.of,
+                }
+            )
+        return told
+
+    def _attempts(self) -> list[dict[str, Any]]:
+        if not self._desk.participant:
+            return []
+        names = ("step", "attempt", "kind", "condition", "order", "state", "reason")
+        return [
+            {name: row[name] for name in (*names, "excluded", "started", "ended")}
+            | {"measures": {n: row["measures"].get(n) for n in _SHOWN}}
+            for row in self._desk.attempts.listed(self._desk.participant)
+        ]
+
+    def _balance(self) -> dict[str, Any]:
+        slots = [
+            int(row["slot"])
+            for row in self._session.people()
+            if row["status"] in (ACTIVE, FINISHED)
+        ]
+        found = balance(self._session.plan, slots)
+        return {"places": found.places, "even": found.is_even and bool(slots)}
+
+    def _events(self) -> list[dict[str, Any]]:
+        return self._session.store.rows(
+            "SELECT utc, kind, step, text FROM events WHERE participant = ? "
+            "ORDER BY number DESC LIMIT 30",
+            self._desk.participant,
+        )
+
+    def act(self, action: str, given: Mapping[str, Any]) -> dict[str, Any]:
+        """Do what the console wants.
+
+        Raises:
+            ValueError: If there is no such action, or it cannot be done now.
+            OSError: If it cannot be kept.
+        """
+        wanted = ACTIONS.get(action)
+        if wanted is None:
+            raise ValueError(f"there is no '{action}'; {', '.join(ACTIONS)} are known")
+        with self._desk.lock:
+            function, names = wanted
+            missing = [name for name in names if name not in given]
+            if missing:
+                raise ValueError(f"{action} needs {', '.join(missing)}")
+            function(self, *(given[name] for name in names))
+            return self.shown()
+
+    def begin(self, participant: str) -> None:
+        """Let a participant sit down."""
+        told = str(participant).strip()
+        if self._desk.participant and self._desk.participant != told:
+            self._refuse_while_driving()
+            self._desk.leave_drive("another participant sat down")
+        self._session.begin(told)
+        self._desk.participant = told
+        self._desk.trouble = ""
+
+    def leave(self) -> None:
+        """Let the participant go; they may go on later."""
+        self._refuse_while_driving()
+        self._desk.leave_drive("the participant left")
+        self._desk.participant = ""
+
+    def _refuse_while_driving(self) -> None:
+        drive = self._desk.drive
+        if drive is not None and drive.state in (RUNNING, SAVING):
+            raise ValueError("a drive is on; stop it first")
+
+    def _command(self, *command: object) -> None:
+        if self._desk.drive is None:
+            raise ValueError("nobody drives in this step")
+        self._desk.drive.ask(*map(str, command))
+
+    def stop(self) -> None:
+        """End the attempt; it is kept as aborted and driven again."""
+        if self._desk.drive is None:
+            raise ValueError("nobody drives in this step")
+        self._desk.drive.end(False, "stopped by the experimenter")
+
+    def enough(self) -> None:
+        """Practice is enough, whatever the clock says."""
+        standing = self._desk.present()
+        if standing.step.kind != "practise" or self._desk.drive is None:
+            raise ValueError("no practice is on")
+        self._desk.drive.end(True, "ended by the experimenter")
+
+    def skip(self, step: str, reason: str) -> None:
+        """Leave the step out."""
+        standing = self._desk.present()
+        self._refuse_while_driving()
+        self._session.skip(standing.participant, str(step), str(reason))
+        self._desk.leave_drive("the step was skipped")
+
+    def repeat(self, step: str, reason: str) -> None:
+        """Have a step done again."""
+        self._refuse_while_driving()
+        standing = self._desk.present()
+        self._session.repeat(standing.participant, str(step), str(reason))
+
+    def exclude(self, step: str, attempt: object, reason: str, out: bool) -> None:
+        """Leave a drive out of the analysis, or take it in."""
+        who = self._desk.present().participant
+        number = int(str(attempt))
+        self._desk.attempts.exclude(who, str(step), number, str(reason), out)
+
+    def note(self, text: str) -> None:
+        """Keep a note."""
+        self._session.note(self._desk.participant, str(text))
+
+    def withdraw(self, participant: str, confirm: str) -> None:
+        """Delete everything of a participant who asks for it."""
+        who = str(participant)
+        if confirm != who:
+            raise ValueError("type the pseudonym again to delete everything of it")
+        if who == self._desk.participant:
+            self.leave()
+            self._desk.wait_until_idle()
+        self._session.withdraw(who)
+
+    def check(self) -> None:
+        """Look at the devices."""
+        self._desk.checked = [
+            {"name": name, "well": well, "told": told, "utc": now().utc}
+            for name, well, told in self._desk.devices.checks()
+        ]
+        with self._session.store.transaction():
+            self._session.store.tell(
+                "checked",
+                participant=self._desk.participant,
+                data={"checks": self._desk.checked},
+            )
+
+
+ACTIONS: dict[str, tuple[Callable[..., None], tuple[str, ...]]] = {
+    "begin": (Console.begin, ("participant",)),
+    "leave": (Console.leave, ()),
+    "start": (lambda console: console._command("start"), ()),
+    "pause": (lambda console: console._command("pause", "experimenter"), ()),
+    "resume": (lambda console: console._command("resume"), ()),
+    "stop": (Console.stop, ()),
+    "emergency": (Console.stop, ()),
+    "finish": (Console.enough, ()),
+    "skip": (Console.skip, ("step", "reason")),
+    "repeat": (Console.repeat, ("step", "reason")),
+    "exclude": (
+        lambda console, *given: console.exclude(*given, True),
+        ("step", "attempt", "reason"),
+    ),
+    "include": (
+        lambda console, *given: console.exclude(*given, False),
+        ("step", "attempt", "reason"),
+    ),
+    "note": (Console.note, ("text",)),
+    "replace": (
+        lambda console, *given: console._session.drop(*map(str, given)),
+        ("participant", "reason"),
+    ),
+    "withdraw": (Console.withdraw, ("participant", "confirm")),
+    "check": (Console.check, ()),
+}
+"""What the console can ask for, and what it has to say with it."""

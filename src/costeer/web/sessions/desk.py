@@ -1,0 +1,338 @@
+"""What the server does for a session: the participant's steps and the console's wishes.
+
+Every method may be called from any thread; one lock keeps them apart. What changes the
+store has changed it before it returns.
+"""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Callable, Mapping
+from importlib import metadata as distribution
+from typing import Any, NamedTuple
+
+from costeer.devices.head.calibration import HeadCalibration
+from costeer.devices.wheels.calibration import WheelCalibration
+from costeer.devices.wheels.interface import WheelDescription
+from costeer.loop.trial import git_revision
+from costeer.runtime.setup import DriveSetup, check_drive
+from costeer.sessions.attempts import Attempts
+from costeer.sessions.plan import Step, trial_of
+from costeer.sessions.questionnaires.answers import checked_answers
+from costeer.sessions.questionnaires.instrument import (
+    Instrument,
+    load_instrument,
+    load_texts,
+    rendered,
+)
+from costeer.sessions.session import Session, Standing
+from costeer.sessions.store import StoreError
+from costeer.web.drive import PageOptions
+from costeer.web.sessions.judged import driven_whole, measured
+from costeer.web.sessions.step_drive import Outcome, StepDrive
+
+# Any, in this file: of JSON.
+
+
+class Devices(NamedTuple):
+    """What participants drive with.
+
+    Attributes:
+        input: "keyboard", "gamepad" or "wheel".
+        wheel: None for virtual hands.
+        calibration: None for virtual hands.
+        head: Makes the calibration of a participant's head; None without a tracker.
+        checks: Looks at the devices: name, whether it is well, what to do.
+    """
+
+    input: str = "keyboard"
+    wheel: WheelDescription | None = None
+    calibration: WheelCalibration | None = None
+    head: Callable[[str], HeadCalibration | None] = lambda participant: None
+    checks: Callable[[], list[tuple[str, bool, str]]] = list
+
+
+class Desk:
+    """The session as its pages see it.
+
+    Args:
+        session: Of the study.
+        devices: Of the lab.
+    """
+
+    def __init__(self, session: Session, devices: Devices) -> None:
+        self.session, self.devices = session, devices
+        self.attempts = Attempts(session, driven_whole)
+        self.lock = threading.RLock()
+        self._idle = threading.Condition(self.lock)
+        self.participant = ""
+        self._drive: StepDrive | None = None
+        self._driven: tuple[str, str, int] | None = None
+        self._break_began: dict[tuple[str, str], float] = {}
+        self.checked: list[dict[str, Any]] = []
+        self.trouble = ""
+        self._is_closing = False
+
+    # What is on
+
+    @property
+    def drive(self) -> StepDrive | None:
+        """The drive that is on."""
+        return self._drive
+
+    def standing(self) -> Standing | None:
+        """Where the participant stands; None without one."""
+        if not self.participant:
+            return None
+        return self.session.standing(self.participant)
+
+    def state(self) -> dict[str, Any]:
+        """What the participant's page shows."""
+        with self.lock:
+            standing = self.standing()
+            language = self._language()
+            told: dict[str, Any] = {
+                "type": "session",
+                "title": self.session.plan.title,
+                "language": language,
+                "texts": load_texts(language, self.session.folder),
+                "trouble": self.trouble,
+            }
+            if standing is None:
+                return told | {"participant": "", "step": None}
+            self._prepare(standing)
+            return told | {
+                "participant": standing.participant,
+                "step": self._shown(standing),
+            }
+
+    def _language(self) -> str:
+        if not self.participant:
+            return self.session.plan.language
+        return self.session.language_of(self.participant)
+
+    def _shown(self, standing: Standing) -> dict[str, Any]:
+        """A step as the participant's page takes it."""
+        step = standing.step
+        shown: dict[str, Any] = {
+            "id": step.id,
+            "kind": step.kind,
+            "text": step.text,
+            "condition": step.condition,
+            "number": standing.number,
+            "of": standing.of,
+            "minutes": step.minutes,
+            "self_paced": self.session.plan_of(standing.participant).self_paced,
+        }
+        if step.kind in ("ask", "consent"):
+            shown["instrument"] = rendered(
+                self._instrument(step), self._seed(standing.participant, step)
+            )
+        if step.kind == "break":
+            shown["remaining"] = self._remaining(standing)
+        if step.drives:
+            drive = self._drive
+            shown["drive"] = {"state": "waiting"} if drive is None else drive.told()
+            shown["enough"] = self._is_enough(step)
+        return shown
+
+    def _instrument(self, step: Step) -> Instrument:
+        return load_instrument(step.instrument, self._language(), self.session.folder)
+
+    def _seed(self, participant: str, step: Step) -> int:
+        """Of a questionnaire's random order: the same after a reload."""
+        told = f"{self.session.plan.seed} {participant} {step.id}"
+        return int.from_bytes(told.encode()) % 2**63
+
+    def _remaining(self, standing: Standing) -> float:
+        """Of a break [s]."""
+        key = standing.participant, standing.step.id
+        began = self._break_began.setdefault(key, time.monotonic())
+        return max(0.0, round(60.0 * standing.step.minutes - time.monotonic() + began))
+
+    def _is_enough(self, step: Step) -> bool:
+        """Whether a practice was long enough."""
+        seconds = 0.0 if self._drive is None else self._drive.seconds
+        return step.kind == "practise" and seconds >= 60.0 * step.minutes
+
+    # What participants do
+
+    def next(self, step: str) -> dict[str, Any]:
+        """Go on from a step that needs nothing else, or from practice.
+
+        Raises:
+            ValueError: If it is not that far.
+            OSError: If it cannot be kept.
+        """
+        with self.lock:
+            standing = self.present()
+            if step not in self.session.over(standing.participant):
+                on = self.session.on(standing.participant, step)
+                self._go_on(standing, on)
+            return self.state()
+
+    def _go_on(self, standing: Standing, on: Step) -> None:
+        """End a step that its page ends.
+
+        Raises:
+            ValueError: If the step does not end so.
+        """
+        if on.kind in ("ask", "consent"):
+            raise ValueError("the questions come first")
+        if on.kind == "drive":
+            raise ValueError("the trial ends at the end of the course")
+        if on.kind == "break" and self._remaining(standing) > 0.0:
+            raise ValueError("the break is not over yet")
+        if on.kind == "practise":
+            if not self._is_enough(on):
+                raise ValueError(f"practise for at least {on.minutes:g} min")
+            self._end_practice()
+            return
+        self.session.finish(standing.participant, on.id)
+
+    def answers(self, step: str, given: Mapping[str, Any]) -> dict[str, Any]:
+        """Take the answers of a step.
+
+        Raises:
+            ValueError: If one is missing or cannot be, or another step is on.
+            OSError: If they cannot be kept.
+        """
+        with self.lock:
+            standing = self.present()
+            who = standing.participant
+            steps = {each.id: each for each in self.session.steps_of(who)}
+            if step not in steps or steps[step].kind not in ("ask", "consent"):
+                raise ValueError(f"step '{step}' asks nothing")
+            instrument = self._instrument(steps[step])
+            checked = checked_answers(instrument, given)
+            about = instrument.name, instrument.version
+            self.session.answer(who, step, checked, about)
+            return self.state()
+
+    def present(self) -> Standing:
+        """Where the participant who is here stands.
+
+        Raises:
+            ValueError: If nobody is.
+        """
+        standing = self.standing()
+        if standing is None:
+            raise ValueError("no participant is here; the experimenter begins one")
+        return standing
+
+    # Drives
+
+    def _prepare(self, standing: Standing) -> None:
+        """Have the processes of a step that drives ready."""
+        step = standing.step
+        wanted = (standing.participant, step.id)
+        if self._is_closing or not step.drives or self.trouble:
+            return
+        if self._driven is not None:
+            if self._driven[:2] == wanted:
+                return  # it is on, or has just ended
+            self.leave_drive("another step is on")
+        if self._drive is not None:
+            return  # the one before still ends
+        try:
+            self._start(standing)
+        except (ValueError, OSError) as error:
+            self.trouble = str(error)
+
+    def _start(self, standing: Standing) -> None:
+        """Begin an attempt.
+
+        Raises:
+            ValueError: If the drive cannot be.
+            OSError: If nothing can be written.
+        """
+        who, step = standing.participant, standing.step
+        plan, row = self.session.plan_of(who), self._row(who)
+        setup = DriveSetup(
+            trial=trial_of(plan, step, int(row["slot"])),
+            wheel=self.devices.wheel,
+            calibration=self.devices.calibration,
+            intention=plan.intention,
+            head=self.devices.head(who),
+            participant=who,
+        )
+        check_drive(setup)
+        number, record = self.attempts.start(who, step.id, self._facts(setup))
+        self._driven = (who, step.id, number)
+        options = PageOptions(input=self.devices.input, show_signals=False)
+        self._drive = StepDrive(setup, record, options, self._end)
+        self._drive.begin()
+
+    def _facts(self, setup: DriveSetup) -> dict[str, Any]:
+        """What a reader of the methods section asks for."""
+        calibration = self.devices.calibration
+        return {
+            "costeer": distribution.version("costeer"),
+            "git_revision": git_revision(),
+            "input": self.devices.input,
+            "wheel": None if setup.wheel is None else setup.wheel.name,
+            "wheel_calibration": None if calibration is None else calibration._asdict(),
+            "head": None if setup.head is None else setup.head.tracker.kind,
+            "checks": self.checked,
+        }
+
+    def _row(self, participant: str) -> dict[str, Any]:
+        rows = self.session.people()
+        return next(row for row in rows if row["participant"] == participant)
+
+    def _end(self, outcome: Outcome) -> None:
+        """Keep how an attempt ended; called in a thread of the drive."""
+        with self.lock:
+            driven = self._driven
+            if driven is None:
+                return
+            who, step, _ = driven
+            measures, reason = None, outcome.reason
+            if outcome.record is not None and outcome.reached_end:
+                steps = {each.id: each for each in self.session.steps_of(who)}
+                measures, said = measured(outcome.record, steps[step])
+                reason = "; ".join(each for each in (reason, said) if each)
+            self._keep(driven, measures, reason or outcome.reason)
+            self._driven = self._drive = None
+            self._idle.notify_all()
+
+    def _keep(
+        self,
+        driven: tuple[str, str, int],
+        measures: dict[str, Any] | None,
+        reason: str,
+    ) -> None:
+        """Write the end of an attempt, again and again while the disk is full."""
+        while True:
+            try:
+                self.attempts.end(*driven, measures, reason)
+            except StoreError as error:
+                self.trouble = str(error)
+                if self._is_closing:
+                    return  # it is judged at the next start
+                time.sleep(1.0)
+                continue
+            self.trouble = ""
+            return
+
+    def _end_practice(self) -> None:
+        if self._drive is not None:
+            self._drive.end(True, "")
+
+    def leave_drive(self, reason: str) -> None:
+        """End the drive that is on; what was driven is kept as aborted."""
+        if self._drive is not None:
+            self._drive.end(False, reason)
+
+    def close(self) -> None:
+        """End the drive that is on and close the store."""
+        with self.lock:
+            self._is_closing = True
+            self.leave_drive("the session was closed")
+            self.wait_until_idle()
+        self.session.close()
+
+    def wait_until_idle(self) -> None:
+        """Wait until no drive is on any more; half a minute at most."""
+        self._idle.wait_for(lambda: self._drive is None, timeout=30.0)

@@ -1,0 +1,187 @@
+"""One attempt at a drive in a session: from starting its processes to its record."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from costeer.runtime.frame import PLACE
+from costeer.runtime.markers import Marker
+from costeer.runtime.setup import DriveSetup
+from costeer.runtime.states import Fault, RunState
+from costeer.web.drive import DriveOnPages, PageOptions
+
+STARTING, READY, RUNNING, PAUSED, SAVING, OVER, FAILED = (
+    "starting",
+    "ready",
+    "running",
+    "paused",
+    "saving",
+    "ended",
+    "failed",
+)
+"""Where an attempt stands."""
+
+_STATES = {
+    RunState.WAITING: READY,
+    RunState.RUNNING: RUNNING,
+    RunState.PAUSED: PAUSED,
+    RunState.ENDED: SAVING,
+}
+
+
+class Outcome(NamedTuple):
+    """How an attempt ended.
+
+    Attributes:
+        record: That was kept; None if nothing was.
+        reached_end: Whether the course was driven to its end, or practice was enough.
+        reason: Why not.
+        facts: Of the way from device to page, in words.
+    """
+
+    record: Path | None
+    reached_end: bool
+    reason: str
+    facts: tuple[str, ...]
+
+
+class StepDrive:
+    """An attempt; starts and ends in threads of its own.
+
+    Args:
+        setup: Of the drive.
+        record: File to write.
+        options: What pages show.
+        ended: Is told how it ended, once, in another thread.
+    """
+
+    def __init__(
+        self,
+        setup: DriveSetup,
+        record: Path,
+        options: PageOptions,
+        ended: Callable[[Outcome], None],
+    ) -> None:
+        self._setup, self._record, self._options = setup, record, options
+        self._ended = ended
+        self._lock = threading.Lock()
+        self._is_ending = False
+        self._frame: NDArray[np.float64] | None = None
+        self.state = STARTING
+        self.reason = ""
+        self.markers: list[Marker] = []
+        self.pages: DriveOnPages | None = None
+        self._thread = threading.Thread(target=self._start, daemon=True)
+
+    def begin(self) -> None:
+        """Start the processes; returns at once."""
+        self._thread.start()
+
+    def _start(self) -> None:
+        try:
+            pages = DriveOnPages(self._setup, self._record, self._options)
+            pages.also(self._take, self._hear)
+            pages.drive.start()
+        except (ValueError, OSError, ModuleNotFoundError) as error:
+            self.state, self.reason = FAILED, str(error)
+            self.end(False, str(error))
+            return
+        self.pages = pages
+        self.state = READY
+
+    def _take(self, frame: NDArray[np.float64]) -> None:
+        """Follow the drive by its frames."""
+        self._frame = frame
+        if not self._is_ending:
+            self.state = _STATES[RunState(int(frame[PLACE["run_state"]]))]
+
+    def _hear(self, marker: Marker) -> None:
+        """Follow the drive by what happens."""
+        self.markers.append(marker)
+        if marker.kind == "ended" and marker.name == "course":
+            self.end(True, "")
+        elif marker.kind == "fault" and marker.name == Fault.LOOP_GONE.word:
+            self.end(False, Fault.LOOP_GONE.text)
+        elif marker.kind in ("fault", "error"):
+            self.reason = _words(marker)
+        elif marker.kind in ("resumed", "started"):
+            self.reason = ""
+
+    def ask(self, command: str, *values: object) -> None:
+        """Ask the real-time process for something.
+
+        Raises:
+            ValueError: If there is none, or it is not there any more.
+        """
+        pages = self.pages
+        if pages is None or self._is_ending:
+            raise ValueError(f"the drive is {self.state}; wait until it is ready")
+        pages.drive.send(command, *values)
+
+    def end(self, reached_end: bool, reason: str) -> None:
+        """End the attempt; returns at once, and does nothing a second time."""
+        with self._lock:
+            if self._is_ending:
+                return
+            self._is_ending = True
+        if self.state != FAILED:
+            self.state = SAVING
+        threading.Thread(target=self._close, args=(reached_end, reason)).start()
+
+    def _close(self, reached_end: bool, reason: str) -> None:
+        """Make the record whole and tell how it ended."""
+        if self._thread is not threading.current_thread() and self._thread.ident:
+            self._thread.join()
+        pages, kept, facts = self.pages, [], ()
+        if pages is not None:
+            pages.broadcast.send({"type": "farewell"})
+            pages.stop()
+            kept, facts = pages.drive.kept, tuple(pages.account())
+            reason = "; ".join([each for each in (reason, *pages.drive.unkept) if each])
+        record = kept[-1] if kept else None
+        outcome = Outcome(record, reached_end and record is not None, reason, facts)
+        self._ended(outcome)
+        if self.state != FAILED:
+            self.state = OVER
+
+    @property
+    def seconds(self) -> float:
+        """Of the trial [s]; 0 before it."""
+        return self._number("time")
+
+    @property
+    def metres(self) -> float:
+        """Driven [m]; 0 before the start."""
+        return self._number("longitudinal_position")
+
+    def _number(self, name: str) -> float:
+        frame = self._frame
+        if frame is None:
+            return 0.0
+        return float(np.nan_to_num(frame[PLACE[name]]))
+
+    def told(self) -> dict[str, Any]:  # Any: of JSON
+        """Where the attempt stands, for pages."""
+        pages = self.pages
+        losses = [] if pages is None else [each.text for each in pages.drive.losses]
+        return {
+            "state": self.state,
+            "reason": self.reason,
+            "seconds": round(self.seconds, 2),
+            "metres": round(self.metres, 1),
+            "length": self._setup.trial.length,
+            "losses": losses,
+            "unkept": [] if pages is None else list(pages.drive.unkept),
+        }
+
+
+def _words(marker: Marker) -> str:
+    """What is wrong, in words."""
+    known = {fault.word: fault.text for fault in Fault}
+    return marker.note or known.get(marker.name, marker.name)
