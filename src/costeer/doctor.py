@@ -23,6 +23,7 @@ from typing import Literal, NamedTuple
 import numpy as np
 
 from costeer.base.extras import LIBRARIES, install_command
+from costeer.devices.wheels.interface import WheelDescription
 from costeer.study.jobs import usable_cores
 
 OLDEST_PYTHON = (3, 11)
@@ -321,3 +322,49 @@ def check_extra(package: str) -> Finding:
         return Finding(package, "ok", f"{found}, for {library.purpose}")
     told = f"not installed, for {library.purpose}"
     return Finding(package, "optional", told, install_command(library.extra))
+
+
+def lab_checks(
+    folder: Path, wheel: WheelDescription | None, tracker: str = "none"
+) -> list[tuple[str, bool, str]]:
+    """What an experimenter looks at before a participant sits down.
+
+    Args:
+        folder: Of the study.
+        wheel: That participants hold; None for keys or a stick.
+        tracker: Of the head, as `--head` names it.
+
+    Returns:
+        Name, whether it is well, and what there is or how to mend it.
+    """
+    checks = [check_disk(folder), check_shared_memory(), check_timer()]
+    checks.append(check_priority())
+    told = [(c.name, c.status == "ok", _told(c)) for c in checks]
+    if wheel is not None:
+        told.append(("Steering wheel", *_self_test(wheel)))
+    if tracker.startswith("webcam"):
+        camera = check_camera()
+        told.append((camera.name, camera.status == "ok", _told(camera)))
+    return told
+
+
+def _told(finding: Finding) -> str:
+    return "; ".join(part for part in (finding.detail, finding.remedy) if part)
+
+
+OLD = 30.0
+"""A self-test older than so many days is to be done again."""
+
+
+def _self_test(wheel: WheelDescription) -> tuple[bool, str]:
+    """Whether a wheel's self-test is there and recent, and what to do."""
+    from costeer.devices.wheels.store import calibration_path
+
+    path = calibration_path(wheel.identity)
+    if wheel.kind == "simulated":
+        return True, f"{wheel.name}; it needs no self-test"
+    if not path.is_file():
+        return False, f"{wheel.name} is not calibrated; run: costeer wheel calibrate"
+    days = (time.time() - path.stat().st_mtime) / 86400.0
+    said = f"{wheel.name}, self-test {days:.0f} days ago"
+    return days <= OLD, said + ("" if days <= OLD else "; run: costeer wheel test")

@@ -23,9 +23,9 @@ from costeer.sessions.questionnaires.answers import checked_answers
 from costeer.sessions.questionnaires.instrument import (
     Instrument,
     load_instrument,
-    load_texts,
     rendered,
 )
+from costeer.sessions.questionnaires.texts import load_texts
 from costeer.sessions.session import Session, Standing
 from costeer.sessions.store import StoreError
 from costeer.web.drive import PageOptions
@@ -96,7 +96,7 @@ class Desk:
                 "type": "session",
                 "title": self.session.plan.title,
                 "language": language,
-                "texts": load_texts(language, self.session.folder),
+                "texts": load_texts(language, self.session.folder).pages,
                 "trouble": self.trouble,
             }
             if standing is None:
@@ -118,7 +118,7 @@ class Desk:
         shown: dict[str, Any] = {
             "id": step.id,
             "kind": step.kind,
-            "text": step.text,
+            **self._words(step),
             "condition": step.condition,
             "number": standing.number,
             "of": standing.of,
@@ -136,6 +136,12 @@ class Desk:
             shown["drive"] = {"state": "waiting"} if drive is None else drive.told()
             shown["enough"] = self._is_enough(step)
         return shown
+
+    def _words(self, step: Step) -> dict[str, str]:
+        """Heading and text of a step: of the text files, or the plan's own."""
+        pages = load_texts(self._language(), self.session.folder).pages
+        text = pages.get(f"{step.text}_text", step.text)
+        return {"title": pages.get(f"{step.text}_title", ""), "text": text}
 
     def _instrument(self, step: Step) -> Instrument:
         return load_instrument(step.instrument, self._language(), self.session.folder)

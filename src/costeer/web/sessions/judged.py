@@ -41,7 +41,7 @@ def driven_whole(record: Path, step: Step) -> dict[str, Any] | None:
     """Measures of a record whose drive came to its end; None if it did not."""
     try:
         found = read_record(record)
-        length = float(found.metadata["configuration"]["road"]["length"])  # type: ignore[index,call-overload]
+        length = float(found.metadata["configuration"]["road"]["length"])  # type: ignore[index]
         reached = float(found.columns["longitudinal_position"][-1]) >= length - 1.0
     except (ValueError, OSError, KeyError, TypeError):
         return None

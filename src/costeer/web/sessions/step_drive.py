@@ -28,10 +28,10 @@ STARTING, READY, RUNNING, PAUSED, SAVING, OVER, FAILED = (
 """Where an attempt stands."""
 
 _STATES = {
-    RunState.WAITING: READY,
-    RunState.RUNNING: RUNNING,
-    RunState.PAUSED: PAUSED,
-    RunState.ENDED: SAVING,
+    int(RunState.WAITING): READY,
+    int(RunState.RUNNING): RUNNING,
+    int(RunState.PAUSED): PAUSED,
+    int(RunState.ENDED): SAVING,
 }
 
 
@@ -99,7 +99,7 @@ class StepDrive:
         """Follow the drive by its frames."""
         self._frame = frame
         if not self._is_ending:
-            self.state = _STATES[RunState(int(frame[PLACE["run_state"]]))]
+            self.state = _STATES[int(frame[PLACE["run_state"]])]
 
     def _hear(self, marker: Marker) -> None:
         """Follow the drive by what happens."""
@@ -138,7 +138,8 @@ class StepDrive:
         """Make the record whole and tell how it ended."""
         if self._thread is not threading.current_thread() and self._thread.ident:
             self._thread.join()
-        pages, kept, facts = self.pages, [], ()
+        pages, kept = self.pages, list[Path]()
+        facts: tuple[str, ...] = ()
         if pages is not None:
             pages.broadcast.send({"type": "farewell"})
             pages.stop()

@@ -1,0 +1,222 @@
+"""`costeer session`: a study with people, from consent to report."""
+
+from __future__ import annotations
+
+import signal
+from contextlib import suppress
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from costeer.cli.console import note, print_table
+
+if TYPE_CHECKING:
+    from starlette.types import ASGIApp
+
+    from costeer.web.security import Access
+    from costeer.web.serving import Running
+    from costeer.web.sessions.desk import Desk, Devices
+
+ACTIONS = ("new", "run", "status", "export", "withdraw", "power", "rehearse")
+
+
+def session(
+    action: Annotated[str, typer.Argument(help=", ".join(ACTIONS) + ".")],
+    folder: Annotated[Path, typer.Argument(help="Folder of the study.")],
+    plan: Annotated[
+        Path | None,
+        typer.Option(help="With new: a plan of your own; else the paper's experiment."),
+    ] = None,
+    participant: Annotated[
+        str | None, typer.Option(help="With withdraw: whose data are deleted.")
+    ] = None,
+    wheel: Annotated[
+        str, typer.Option(help="With run: as `costeer drive --wheel`.")
+    ] = "auto",
+    head: Annotated[
+        str, typer.Option(help="With run: as `costeer drive --head`.")
+    ] = "none",
+    port: Annotated[
+        int, typer.Option(help="With run: of the pages; 0 takes any free.")
+    ] = 8700,
+    host: Annotated[
+        str,
+        typer.Option(
+            help="With run: to listen on; others than this computer need a token."
+        ),
+    ] = "127.0.0.1",
+    browser: Annotated[
+        bool,
+        typer.Option("--browser/--no-browser", help="With run: open the console."),
+    ] = True,
+) -> None:
+    """Run a study with people: plan, questionnaires, drives, data.
+
+    `new` writes the plan of the paper's experiment into a folder; edit it. `run` shows
+    two addresses, of the participant's page and of the console.
+
+    Example:
+        costeer session new my-study
+        costeer session run my-study
+        costeer session status my-study
+    """
+    acts = {
+        "new": partial(_new, folder, plan),
+        "run": partial(_run, folder, wheel, head, (host, port), browser),
+        "status": partial(_status, folder),
+        "withdraw": partial(_withdraw, folder, participant),
+    }
+    if action not in acts:
+        known = ", ".join(acts)
+        raise ValueError(f"there is no action '{action}'; choose one of {known}")
+    acts[action]()
+
+
+def _new(folder: Path, plan: Path | None) -> None:
+    """Make the folder of a study.
+
+    Raises:
+        ValueError: If it holds a study already, or the plan cannot be.
+        OSError: If it cannot be written.
+    """
+    from costeer.base.files import read_whole, write_text
+    from costeer.sessions.plan import (
+        PLAN_FILE,
+        balance,
+        paper_plan_text,
+        parsed_plan,
+    )
+
+    text = paper_plan_text() if plan is None else read_whole(plan).decode("utf-8")
+    found = parsed_plan(text, str(plan or PLAN_FILE))
+    target = folder / PLAN_FILE
+    if target.exists():
+        raise ValueError(
+            f"{folder} has a {PLAN_FILE} already; edit that, or give another folder"
+        )
+    folder.mkdir(parents=True, exist_ok=True)
+    write_text(target, text)
+    even = balance(found, range(1, found.participants + 1)).is_even
+    told = "balanced" if even else "not balanced over so many"
+    typer.echo(target)
+    note(
+        f"costeer: {found.participants} participants, {told}; edit the plan, then run:"
+    )
+    note(f"costeer session run {folder}")
+
+
+def _run(
+    folder: Path, wheel: str, head: str, where: tuple[str, int], browser: bool
+) -> None:
+    """Serve both pages until Ctrl-C."""
+    from costeer.sessions.session import Session
+    from costeer.web.security import access_for
+    from costeer.web.serving import listening
+    from costeer.web.sessions.desk import Desk
+
+    devices = _devices(wheel, head, folder)
+    access = access_for(*where)
+    listening(*where).close()  # before anything is opened
+    for name in ("SIGTERM", "SIGHUP", "SIGBREAK"):
+        if hasattr(signal, name):
+            signal.signal(getattr(signal, name), _stop)
+    desk = Desk(Session(folder), devices)
+    try:
+        _serve(desk, access, browser)
+    finally:
+        for number in (signal.SIGINT, signal.SIGTERM):
+            signal.signal(number, signal.SIG_IGN)  # not to be cut short
+        desk.close()
+    if desk.trouble:
+        note(f"costeer: {desk.trouble}")
+        raise typer.Exit(1)
+
+
+def _stop(*_: object) -> None:
+    raise KeyboardInterrupt
+
+
+def _devices(wheel: str, head: str, folder: Path) -> Devices:
+    """What participants drive with.
+
+    Raises:
+        ValueError: If there is no such wheel or head tracker.
+    """
+    from costeer.cli.devices import chosen_head, chosen_wheel
+    from costeer.doctor import lab_checks
+    from costeer.web.sessions.desk import Devices
+
+    chosen = chosen_wheel(wheel)
+    return Devices(
+        input=chosen.input,
+        wheel=chosen.description,
+        calibration=chosen.calibration,
+        head=lambda who: chosen_head(head, who),
+        checks=lambda: lab_checks(folder, chosen.description, head),
+    )
+
+
+def _serve(desk: Desk, access: Access, browser: bool) -> None:
+    """Answer both pages until someone stops it."""
+    from costeer.runtime.clock import favour_thread
+    from costeer.web.serving import open_page, serve
+    from costeer.web.sessions.app import session_app
+
+    def make_app(taken: Access) -> ASGIApp:
+        return session_app(desk, taken)
+
+    def announce(running: Running) -> None:
+        console = running.experimenter_address.replace("/?", "/console?")
+        typer.echo(f"participant at: {running.address}")
+        typer.echo(f"console at:     {console}")
+        note("costeer: Ctrl-C ends; what was answered and driven is kept")
+        if browser:
+            open_page(console)
+
+    favour_thread()
+    with suppress(KeyboardInterrupt):
+        serve(make_app, access, announce)
+
+
+def _status(folder: Path) -> None:
+    """Print who takes part and where each stands."""
+    from costeer.sessions.session import Session
+
+    session = Session(folder)
+    rows = []
+    for row in session.people():
+        standing = session.standing(row["participant"])
+        rows.append(
+            [
+                row["participant"],
+                str(row["slot"]),
+                row["status"],
+                standing.step.id,
+                f"{standing.number - 1} of {standing.of}",
+                row["reason"],
+            ]
+        )
+    print_table(["participant", "row", "status", "at", "steps done", "reason"], rows)
+    gone = session.num_withdrawn()
+    session.close()
+    if gone:
+        note(f"costeer: {gone} withdrew; nothing of them is left")
+
+
+def _withdraw(folder: Path, participant: str | None) -> None:
+    """Delete all of a participant.
+
+    Raises:
+        ValueError: If there is none.
+        OSError: If something could not be deleted.
+    """
+    from costeer.sessions.session import Session
+
+    if not participant:
+        raise ValueError("whose data? give --participant P01")
+    session = Session(folder)
+    files = session.withdraw(participant)
+    session.close()
+    typer.echo(f"{participant}: {files} files and every row deleted")
