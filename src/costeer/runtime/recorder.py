@@ -15,11 +15,11 @@ from costeer.loop.parameters import DT, LoopParameters
 from costeer.loop.scenario import is_assisted
 from costeer.loop.trial import trial_metadata, trial_predictor
 from costeer.records.columns import COLUMNS
-from costeer.records.metadata import PERSON
+from costeer.records.metadata import PERSON, VIRTUAL
 from costeer.runtime.frame import FRAME, PLACE
 from costeer.runtime.markers import Marker
 from costeer.runtime.patience import STOP_PATIENCE
-from costeer.runtime.setup import DriveSetup, drive_parameters
+from costeer.runtime.setup import DriveSetup, drive_parameters, is_virtual
 from costeer.runtime.shared import Shared
 from costeer.runtime.states import RunState
 from costeer.runtime.stream import RecordStream
@@ -48,11 +48,12 @@ def drive_metadata(
         for name, place in TUNED_BY_HAND.items():
             about[name] = known.get(place, about[name])
     hands = "virtual hands" if setup.wheel is None else setup.wheel.name
+    virtual = is_virtual(setup)
     return {
         **about,
         "participant": setup.participant,
-        "driver": f"person, {hands}",
-        "driver_kind": PERSON,
+        "driver": f"{'virtual hands' if virtual else 'person'}, {hands}",
+        "driver_kind": VIRTUAL if virtual else PERSON,
         "driver_torque_source": torque_source(setup),
         "intention_source": setup.intention,
         "head_tracker": None if setup.head is None else setup.head.tracker.kind,

@@ -159,6 +159,10 @@ class Console:
             raise ValueError("nobody drives in this step")
         self._desk.drive.ask(*map(str, command))
 
+    def retry(self) -> None:
+        """Try again what could not be done."""
+        self._desk.trouble = ""
+
     def stop(self) -> None:
         """End the attempt; it is kept as aborted and driven again."""
         if self._desk.drive is None:
@@ -222,6 +226,7 @@ class Console:
 ACTIONS: dict[str, tuple[Callable[..., None], tuple[str, ...]]] = {
     "begin": (Console.begin, ("participant",)),
     "leave": (Console.leave, ()),
+    "retry": (Console.retry, ()),
     "start": (lambda console: console._command("start"), ()),
     "pause": (lambda console: console._command("pause", "experimenter"), ()),
     "resume": (lambda console: console._command("resume"), ()),

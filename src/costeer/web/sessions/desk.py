@@ -15,6 +15,7 @@ from typing import Any, NamedTuple
 from costeer.devices.head.calibration import HeadCalibration
 from costeer.devices.wheels.calibration import WheelCalibration
 from costeer.devices.wheels.interface import WheelDescription
+from costeer.devices.wheels.simulated import in_hands_of
 from costeer.loop.trial import git_revision
 from costeer.runtime.setup import DriveSetup, check_drive
 from costeer.sessions.attempts import Attempts
@@ -30,7 +31,7 @@ from costeer.sessions.session import Session, Standing
 from costeer.sessions.store import StoreError
 from costeer.web.drive import PageOptions
 from costeer.web.sessions.judged import driven_whole, measured
-from costeer.web.sessions.step_drive import Outcome, StepDrive
+from costeer.web.sessions.step_drive import FAILED, Outcome, StepDrive
 
 # Any, in this file: of JSON.
 
@@ -44,6 +45,7 @@ class Devices(NamedTuple):
         calibration: None for virtual hands.
         head: Makes the calibration of a participant's head; None without a tracker.
         checks: Looks at the devices: name, whether it is well, what to do.
+        haste: Of rehearsals with virtual hands.
     """
 
     input: str = "keyboard"
@@ -51,6 +53,7 @@ class Devices(NamedTuple):
     calibration: WheelCalibration | None = None
     head: Callable[[str], HeadCalibration | None] = lambda participant: None
     checks: Callable[[], list[tuple[str, bool, str]]] = list
+    haste: float = 1.0
 
 
 class Desk:
@@ -254,14 +257,16 @@ class Desk:
             OSError: If nothing can be written.
         """
         who, step = standing.participant, standing.step
-        plan, row = self.session.plan_of(who), self._row(who)
+        plan, slot = self.session.plan_of(who), int(self._row(who)["slot"])
+        trial = trial_of(plan, step, slot)
         setup = DriveSetup(
-            trial=trial_of(plan, step, int(row["slot"])),
-            wheel=self.devices.wheel,
+            trial=trial,
+            wheel=in_hands_of(self.devices.wheel, slot, step.id, trial.speed),
             calibration=self.devices.calibration,
             intention=plan.intention,
             head=self.devices.head(who),
             participant=who,
+            haste=self.devices.haste,
         )
         check_drive(setup)
         number, record = self.attempts.start(who, step.id, self._facts(setup))
@@ -300,6 +305,8 @@ class Desk:
                 measures, said = measured(outcome.record, steps[step])
                 reason = "; ".join(each for each in (reason, said) if each)
             self._keep(driven, measures, reason or outcome.reason)
+            if self._drive is not None and self._drive.state == FAILED:
+                self.trouble = outcome.reason  # not to be tried again and again
             self._driven = self._drive = None
             self._idle.notify_all()
 
