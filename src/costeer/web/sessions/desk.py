@@ -72,6 +72,7 @@ class Desk:
         self.participant = ""
         self._drive: StepDrive | None = None
         self._driven: tuple[str, str, int] | None = None
+        self._is_begun = False
         self._break_began: dict[tuple[str, str], float] = {}
         self.checked: list[dict[str, Any]] = []
         self.trouble = ""
@@ -233,30 +234,41 @@ class Desk:
     # Drives
 
     def _prepare(self, standing: Standing) -> None:
-        """Have the processes of a step that drives ready."""
-        step = standing.step
-        wanted = (standing.participant, step.id)
-        if self._is_closing or not step.drives or self.trouble:
+        """Have the processes of the drive that is on, or comes next, ready."""
+        who, over = standing.participant, self.session.over(standing.participant)
+        steps = self.session.steps_of(who)
+        ahead = [each for each in steps if each.drives and each.id not in over]
+        if self._is_closing or not ahead or self.trouble:
             return
-        if self._driven is not None:
-            if self._driven[:2] == wanted:
-                return  # it is on, or has just ended
-            self.leave_drive("another step is on")
-        if self._drive is not None:
-            return  # the one before still ends
         try:
-            self._start(standing)
+            if self._driven is not None and self._driven[:2] != (who, ahead[0].id):
+                self.leave_drive("another step is on")
+            if self._drive is None:
+                self._start(who, ahead[0])
+            if ahead[0].id == standing.step.id and not self._is_begun:
+                self._begin_attempt(who, ahead[0])
         except (ValueError, OSError) as error:
             self.trouble = str(error)
 
-    def _start(self, standing: Standing) -> None:
-        """Begin an attempt.
+    def _begin_attempt(self, who: str, step: Step) -> None:
+        """Write that the drive that is ready is driven.
+
+        Raises:
+            StoreError: If it cannot be written.
+        """
+        if self._drive is not None and self._driven is not None:
+            if self._driven[:2] != (who, step.id) or self._drive.is_ending:
+                return
+            self.attempts.start(who, step.id, self._facts(self._drive.setup))
+            self._is_begun = True
+
+    def _start(self, who: str, step: Step) -> None:
+        """Start the processes of an attempt.
 
         Raises:
             ValueError: If the drive cannot be.
             OSError: If nothing can be written.
         """
-        who, step = standing.participant, standing.step
         plan, slot = self.session.plan_of(who), int(self._row(who)["slot"])
         trial = trial_of(plan, step, slot)
         setup = DriveSetup(
@@ -269,8 +281,8 @@ class Desk:
             haste=self.devices.haste,
         )
         check_drive(setup)
-        number, record = self.attempts.start(who, step.id, self._facts(setup))
-        self._driven = (who, step.id, number)
+        number, record = self.attempts.next(who, step)
+        self._driven, self._is_begun = (who, step.id, number), False
         options = PageOptions(input=self.devices.input, show_signals=False)
         self._drive = StepDrive(setup, record, options, self._end)
         self._drive.begin()
@@ -298,6 +310,9 @@ class Desk:
             driven = self._driven
             if driven is None:
                 return
+            if not self._is_begun:
+                self._forget_drive(outcome)
+                return
             who, step, _ = driven
             measures, reason = None, outcome.reason
             if outcome.record is not None and outcome.reached_end:
@@ -305,10 +320,15 @@ class Desk:
                 measures, said = measured(outcome.record, steps[step])
                 reason = "; ".join(each for each in (reason, said) if each)
             self._keep(driven, measures, reason or outcome.reason)
-            if self._drive is not None and self._drive.state == FAILED:
-                self.trouble = outcome.reason  # not to be tried again and again
-            self._driven = self._drive = None
-            self._idle.notify_all()
+            self._forget_drive(outcome)
+
+    def _forget_drive(self, outcome: Outcome) -> None:
+        """No drive is on; one that could not start is not tried again and again."""
+        if self._drive is not None and self._drive.state == FAILED:
+            self.trouble = outcome.reason
+        self._driven = self._drive = None
+        self._is_begun = False
+        self._idle.notify_all()
 
     def _keep(
         self,
@@ -324,7 +344,7 @@ class Desk:
                 self.trouble = str(error)
                 if self._is_closing:
                     return  # it is judged at the next start
-                time.sleep(1.0)
+                self._idle.wait(1.0)  # the lock is free meanwhile
                 continue
             self.trouble = ""
             return
