@@ -167,9 +167,7 @@ class Recorder:
         ends = self._until or (None, None)
         rings = self._shared
         self._next_frame, frames = rings.frames.since(self._next_frame, ends[0])
-        frames, self._seen_until = of_one_trial(
-            frames, PLACE["time"], self._seen_until
-        )
+        frames, self._seen_until = of_one_trial(frames, PLACE["time"], self._seen_until)
         before = max(self._last_time, 0.0)
         rows = self._running(frames)
         if len(rows) and (gap := rows[0, PLACE["time"]] - before) > 1.5 * DT:
