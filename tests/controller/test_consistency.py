@@ -139,3 +139,19 @@ def test_a_hold_time_of_whole_steps_holds_no_step_more() -> None:
     turned = initial_state()._replace(consistent=False, time_in_verdict=DT)
     verdicts = judged([(1.0, 1.0, 5.0)] * 5, held, turned)
     assert [v.consistent for v in verdicts] == [False] * 2 + [True] * 3
+
+
+def test_a_hold_time_counts_from_the_start_of_the_trial_too() -> None:
+    # Conflict from the first step on; the window is full after one second.
+    held = PARAMETERS._replace(hold_time=2.0)
+    verdicts = judged([(-1.0, 1.0, 5.0)] * 130, held)
+    assert [v.consistent for v in verdicts] == [True] * 120 + [False] * 10
+
+
+@pytest.mark.parametrize(("asked", "whole"), [(3.4, 3), (3.6, 4), (2.6, 3)])
+def test_a_hold_time_is_rounded_to_the_nearest_step(asked: float, whole: int) -> None:
+    held = PARAMETERS._replace(hold_time=asked * DT)
+    turned = initial_state()._replace(consistent=False, time_in_verdict=DT)
+    verdicts = judged([(1.0, 1.0, 5.0)] * 6, held, turned)
+    wanted = [False] * (whole - 1) + [True] * (7 - whole)
+    assert [v.consistent for v in verdicts] == wanted
