@@ -116,6 +116,14 @@ def test_a_lost_sample_does_not_blind_the_verdict(lost: int) -> None:
     assert math.isfinite(verdicts[-1].guidance_pseudo_work)
 
 
+@pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf])
+def test_a_lost_sample_counts_as_no_power(value: float) -> None:
+    conflict = (-1.0, 1.0, 5.0)
+    last = judged([*[conflict] * 70, (value, value, 5.0), conflict])[-1]
+    assert last.guidance_pseudo_work == pytest.approx(-5.0 * 59 / 60)
+    assert last.driver_pseudo_work == pytest.approx(5.0 * 59 / 60)
+
+
 @pytest.mark.parametrize("lost", [0, 1])
 @pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf])
 def test_without_a_torque_the_last_verdict_stays(lost: int, value: float) -> None:
