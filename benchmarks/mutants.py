@@ -13,7 +13,6 @@ nobody can observe are told apart, with the reason, and do not count. Exit code 
 from __future__ import annotations
 
 import ast
-import copy
 import os
 import random
 import shutil
@@ -153,16 +152,15 @@ def mutants(file: str) -> Iterator[Mutant]:
     sound = (PACKAGE / file).read_text("utf-8")
     tree, lines = ast.parse(sound), sound.splitlines()
     hints = {id(part) for hint in _hints(tree) for part in ast.walk(hint)}
-    for index, original in enumerate(ast.walk(tree)):
-        if id(original) in hints or not isinstance(original, CHANGEABLE):
+    for node in list(ast.walk(tree)):
+        if id(node) in hints or not isinstance(node, CHANGEABLE):
             continue  # hints are never run
-        altered = copy.deepcopy(tree)
-        node = next(n for k, n in enumerate(ast.walk(altered)) if k == index)
+        fields = vars(node)
+        before = {n: [*v] if isinstance(v, list) else v for n, v in fields.items()}
         if told := changed(node):
-            fixed = ast.fix_missing_locations(altered)
-            line = getattr(node, "lineno", 0)
-            source = lines[line - 1].strip()
-            yield Mutant(file, line, told, source, ast.unparse(fixed))
+            source = lines[node.lineno - 1].strip()
+            yield Mutant(file, node.lineno, told, source, ast.unparse(tree))
+        fields.update(before)
 
 
 def _hints(tree: ast.AST) -> Iterator[ast.AST]:
