@@ -8,7 +8,8 @@ moments, each time resumed, and compares every byte of the results. Then DRIVES 
 drives on the simulated wheel, with the network, of which loop, network, server or
 watchdog is killed while the wheel pushes: the record must be readable up to the last
 quarter of a second, the torque zero, and no process left. Exit code 1 if anything is
-lost. POSIX alone has these signals. Commit nothing meanwhile: records name the revision.
+lost. POSIX alone has these signals. Commit nothing meanwhile: records name the
+revision.
 """
 
 from __future__ import annotations

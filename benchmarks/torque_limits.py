@@ -204,7 +204,6 @@ def through_a_drive(seconds: float) -> Seen:
     device = wheel_setup().calibration
     assert device is not None
     largest = min(usual.torque_limit, device.torque_curve[-1][1])
-    # A wheel that was let go by the watchdog, or lost, begins anew from nothing.
     rate = max(usual.torque_rate_limit, largest / usual.fault_time)
     return seen("whole drive", iter(trouble.written), PLANT_DT, Limits(largest, rate))
 
