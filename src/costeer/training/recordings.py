@@ -297,7 +297,8 @@ def _ready(
     notes += _contradicting(label, unwrapped(columns)[0])
     if not resample:
         return columns, notes
-    return resampled(label, columns), [*notes, *uneven_told(label, columns)]
+    even = resampled(label, with_distance(columns))
+    return even, [*notes, *uneven_told(label, columns)]
 
 
 def _with_notes(found: list[Recording], notes: Sequence[str]) -> list[Recording]:
