@@ -143,7 +143,7 @@ REFUSED = {
     "name that ends in .svg": ("--plot", "drivers.png"),
     "0 is not allowed; give from 1": ("--participants", "0"),
     "-1 is not allowed; give at least 0": ("--seed", "-1"),
-    "speed is 100.0; give a number from 12.0": ("--speed", "100"),
+    "speed is 100 m/s (360 km/h); give a number from 12": ("--speed", "100"),
 }
 
 

@@ -89,7 +89,7 @@ def test_degrees_are_refused_with_the_factor() -> None:
 
 def test_a_stop_is_refused() -> None:
     record = broken("longitudinal_velocity", lambda v: v.__setitem__(500, 1.0))
-    with pytest.raises(ValueError, match="falls to 1 m/s"):
+    with pytest.raises(ValueError, match=r"falls to 3\.6 km/h"):
         drive_of(record)
 
 

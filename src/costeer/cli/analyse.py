@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -13,6 +14,7 @@ from costeer.cli.validate import at_least, positive
 
 if TYPE_CHECKING:
     from costeer.study.analysis import Analysis
+    from costeer.study.definitions import Measure
 
 
 @reads_tables
@@ -54,15 +56,13 @@ def analyse(
         --scale steering_wheel_angle=0.0174533
         costeer analyse drives/ --map lab.yaml --out table.csv
     """
-    from math import radians
-
     from costeer.cli.many import drives
     from costeer.study.analysis import analyse_file
     from costeer.study.definitions import MeasureParameters
 
     way = way_of(told)
     parameters = MeasureParameters(
-        reversal_angle=radians(gap_deg),
+        reversal_angle=math.radians(gap_deg),
         reversal_cutoff=cutoff,
         any_lane=float(any_lane),
     )
@@ -112,7 +112,7 @@ def show_tables(analyses: list[Analysis]) -> None:
 
     for each in analyses:
         measured = {k: m for k, m in each.measures.items() if not m.reason}
-        rows = [[k, f"{m.value:.4g}", m.unit] for k, m in measured.items()]
+        rows = [_row(name, measure) for name, measure in measured.items()]
         typer.echo(_title(each))
         print_table(["measure", "value", "unit"], rows)
         _show_lane_changes(each)
@@ -141,8 +141,8 @@ _HEADINGS = {
     "crossing_time": "at s",
     "duration": "for s",
     "overshoot": "beyond m",
-    "steering_velocity_rms": "rms rad/s",
-    "peak_steering_angle": "peak rad",
+    "steering_velocity_rms": "rms deg/s",
+    "peak_steering_angle": "peak deg",
     "detection_lead_time": "lead s",
 }
 
@@ -150,14 +150,27 @@ _HEADINGS = {
 def _show_lane_changes(each: Analysis) -> None:
     from costeer.cli.console import print_table
 
-    rows = [[_cell(row[name]) for name in _HEADINGS] for row in each.lane_changes]
+    rows = [[_cell(name, row[name]) for name in _HEADINGS] for row in each.lane_changes]
     if rows:
-        title = "Lane changes: to -1 right, +1 left"
-        print_table(list(_HEADINGS.values()), rows, title=title)
+        print_table(list(_HEADINGS.values()), rows, title="Lane changes")
 
 
-def _cell(value: object) -> str:
+def _row(name: str, measure: Measure) -> list[str]:
+    """Name, value and unit of a measure as people read it."""
+    from costeer.pages.units import shown
+
+    unit, factor = shown(measure.unit)
+    return [name, f"{measure.value * factor:.4g}", unit]
+
+
+_IN_DEGREES = ("steering_velocity_rms", "peak_steering_angle")
+
+
+def _cell(name: str, value: object) -> str:
+    if name == "direction":
+        return "left" if value == 1 else "right"
     if isinstance(value, float):
+        value = math.degrees(value) if name in _IN_DEGREES else value
         return "-" if value != value else f"{value:.4g}"
     return str(value)
 

@@ -14,6 +14,7 @@ from costeer.cli.reading import AS_FOUND, Told, way_of
 
 if TYPE_CHECKING:
     from costeer.identification.fit import DriverFit
+    from costeer.identification.parameters import Estimate
     from costeer.records.columns import TrialRecord
     from costeer.validation.fitted import Check
 
@@ -126,10 +127,7 @@ def _draw(plot: Path, fit: DriverFit, record: TrialRecord) -> None:
 def _print_tables(path: Path, fit: DriverFit, checks: list[Check]) -> None:
     print_table(
         ["parameter", "unit", "estimate", "95 % from", "to", "how"],
-        [
-            [e.name, e.unit, *(f"{v:.4g}" for v in (e.value, e.low, e.high)), e.how]
-            for e in fit.estimates
-        ],
+        [_estimate_row(each) for each in fit.estimates],
         f"Driver of {path}: {fit.lane_keeping:.0f} s of lane keeping, "
         f"{fit.num_changes} lane changes",
     )
@@ -156,6 +154,20 @@ def _print_tables(path: Path, fit: DriverFit, checks: list[Check]) -> None:
             typer.echo(f"not compared: {check.measure}: {check.reason}")
     for line in _notes(fit):
         note(f"note: {line}")
+
+
+def _estimate_row(estimate: Estimate) -> list[str]:
+    """An estimate in people's units."""
+    from costeer.pages.units import shown
+
+    unit, factor = shown(estimate.unit)
+    numbers = (estimate.value, estimate.low, estimate.high)
+    return [
+        estimate.name,
+        unit,
+        *(f"{number * factor:.4g}" for number in numbers),
+        estimate.how,
+    ]
 
 
 def _notes(fit: DriverFit) -> list[str]:

@@ -175,8 +175,8 @@ def _check_values(signals: dict[str, Signal]) -> None:
     slowest = float(signals["longitudinal_velocity"].min())
     if slowest < _SLOWEST:
         raise ValueError(
-            f"longitudinal_velocity falls to {slowest:.3g} m/s; a fit needs driving "
-            f"at {_SLOWEST:g} m/s or more throughout: cut the recording"
+            f"longitudinal_velocity falls to {slowest * 3.6:.3g} km/h; a fit needs "
+            f"driving at {_SLOWEST * 3.6:g} km/h or more throughout: cut the recording"
         )
 
 
