@@ -249,3 +249,14 @@ def test_a_lane_with_gaps_is_not_needed_beside_crossings() -> None:
     made = recording("a", "a", drive)
     np.testing.assert_array_equal(made.crossing, whole.crossing)
     assert any("lane is empty in some rows" in note for note in made.notes)
+
+
+def test_the_distance_follows_from_the_position_when_resampled_too() -> None:
+    drive = changed(distance_to_adjacent_lane=None)
+    across = np.where(drive["lane"] == 1, 0.0, -3.5)
+    drive |= {"lateral_position": across}
+    slow = {name: values[::3] for name, values in drive.items()}
+    (made,) = recordings_of(TrialRecord({}, slow), "drive.csv", resample=True)
+    assert made.absent == ()
+    known = made.features[:, FEATURES.index("distance_to_adjacent_lane")]
+    np.testing.assert_allclose(known, 1.75)
