@@ -7,7 +7,13 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 from scipy import stats
 
-from costeer.study.effects import cohens_d, cohens_d_z, partial_eta_squared
+from costeer.study.effects import (
+    cohens_d,
+    cohens_d_z,
+    generalised_eta_squared,
+    hedges_correction,
+    partial_eta_squared,
+)
 
 DEGREES = st.floats(1.0, 700.0)
 
@@ -19,6 +25,30 @@ def test_eta_interval_is_that_of_confintr() -> None:
     assert size.value == pytest.approx(share, abs=1e-12)
     # The seven printed digits of the share go in, so seven come out.
     assert (size.low, size.high) == pytest.approx((0.8244916, 0.8889573), abs=1e-7)
+
+
+def test_small_sample_correction_is_that_of_hedges_and_olkin() -> None:
+    # Hedges and Olkin (1985): J(10) = Γ(5) / (√5 Γ(4.5)) = 0.922745.
+    assert hedges_correction(10.0) == pytest.approx(0.922745, abs=1e-6)
+    # Their approximation 1 - 3 / (4 df - 1) is off by 0.007 at 2 and less beyond.
+    for df in (2.0, 5.0, 30.0, 600.0):
+        assert hedges_correction(df) == pytest.approx(1 - 3 / (4 * df - 1), abs=8e-3)
+    assert hedges_correction(1.0) == 0.0
+
+
+@given(st.floats(0.0, 1e6), DEGREES, DEGREES, st.floats(0.01, 1.0))
+def test_generalised_share_is_smaller_by_the_errors_of_the_rest(
+    statistic: float, df1: float, df2: float, error_share: float
+) -> None:
+    partial = partial_eta_squared(statistic, df1, df2)
+    size = generalised_eta_squared(partial, error_share)
+    # By hand: the effect's sum of squares F df1 / df2 beside an own error of 1, and
+    # all errors of 1 / error_share.
+    explained = statistic * df1 / df2
+    by_hand = explained / (explained + 1.0 / error_share)
+    assert size.value == pytest.approx(by_hand, rel=1e-9, abs=1e-300)
+    assert 0.0 <= size.low <= size.high <= 1.0
+    assert size.value <= partial.value * (1.0 + 1e-12)
 
 
 def test_eta_interval_is_that_of_smithsons_spss_script() -> None:

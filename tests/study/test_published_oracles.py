@@ -136,6 +136,7 @@ def test_racing_study_has_the_reference_statistics(scale: str) -> None:
     assert within.epsilon == pytest.approx(published["eps_gg"], rel=PRINTED)
     corrected = p_value(within, within.epsilon)
     assert corrected == pytest.approx(published["p_gg"], rel=PRINTED)
+    assert within.huynh_feldt == pytest.approx(published["eps_hf"], rel=PRINTED)
     size = partial_eta_squared(within.statistic, within.df1, within.df2)
     assert size.value == pytest.approx(published["partial_eta2"], rel=PRINTED)
     columns = np.tile(np.arange(5), scores.shape[0])

@@ -38,6 +38,11 @@ class EffectRow(NamedTuple):
         effect_size_kind: Which effect size it is.
         n: Number of values (published) or participants (within, mixed).
         note: Reason for a gap, design, and who was left out.
+        epsilon_huynh_feldt: Huynh-Feldt factor on both, less strict than `epsilon` [-].
+        p_huynh_feldt: p value with it [-].
+        generalised_eta_squared: Estimate [-]; none in a mixed model and of ranks.
+        generalised_eta_squared_low: Lower end of its 95 % interval [-].
+        generalised_eta_squared_high: Upper end of it [-].
     """
 
     measure: str
@@ -56,6 +61,11 @@ class EffectRow(NamedTuple):
     effect_size_kind: str
     n: int
     note: str
+    epsilon_huynh_feldt: float
+    p_huynh_feldt: float
+    generalised_eta_squared: float
+    generalised_eta_squared_low: float
+    generalised_eta_squared_high: float
 
 
 class PairRow(NamedTuple):
@@ -84,6 +94,11 @@ class PairRow(NamedTuple):
         n_first: Number of values (published) or participants (within) of the first.
         n_second: The same of the second.
         note: Reason for a gap, and who was left out.
+        d_av: Difference over the root of the mean variance of the two [-].
+        d_av_low: Lower end of its 95 % interval [-].
+        d_av_high: Upper end of it [-].
+        hedges_correction: Factor that takes the bias of small samples from `d_av`, from
+            a d or d_z, and from their intervals [-].
     """
 
     measure: str
@@ -107,6 +122,10 @@ class PairRow(NamedTuple):
     n_first: int
     n_second: int
     note: str
+    d_av: float
+    d_av_low: float
+    d_av_high: float
+    hedges_correction: float
 
 
 class SummaryRow(NamedTuple):
