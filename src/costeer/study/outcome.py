@@ -16,16 +16,22 @@ WITHIN = "within"
 MIXED = "mixed"
 """Within subjects too, by a mixed model: where a participant lacks a cell."""
 
+FRIEDMAN = "friedman"
+"""Friedman's test of the ranks of ordinal answers."""
+
+WILCOXON = "wilcoxon"
+"""Wilcoxon's signed-rank test of two conditions, likewise."""
+
 
 class EffectRow(NamedTuple):
     """A row of `tests.csv`: one effect on one measure.
 
     Attributes:
-        measure: As in `trials.csv` or `lane_changes.csv`.
-        analysis: `published`, `within` or `mixed`.
+        measure: As in `trials.csv` or `lane_changes.csv`; an item of a questionnaire.
+        analysis: `published`, `within` or `mixed`; of answers also `friedman`.
         effect: `condition`, `strength`, `change_duration` or
             `strength:change_duration`.
-        statistic: F [-].
+        statistic: F; chi squared of Friedman's test [-].
         df1: Degrees of freedom of the effect, before the correction [-].
         df2: Degrees of freedom of the error, before the correction [-].
         epsilon: Greenhouse-Geisser factor on both [-]; 1 where it has no place.
@@ -73,7 +79,7 @@ class PairRow(NamedTuple):
 
     Attributes:
         measure: As in `trials.csv` or `lane_changes.csv`.
-        analysis: `published` or `within`.
+        analysis: `published` or `within`; of answers also `wilcoxon`.
         first: A condition or strength.
         second: The one it is compared with.
         mean_first: Mean of the values compared, in the measure's unit.
@@ -81,7 +87,7 @@ class PairRow(NamedTuple):
         mean_difference: First minus second, in the measure's unit.
         low: Lower end of its 95 % interval.
         high: Upper end of it.
-        statistic: t [-].
+        statistic: t; Wilcoxon's sum of the ranks in favour of the first [-].
         df: Degrees of freedom [-].
         p: p value before the correction [-].
         p_corrected: p value after Benjamini-Hochberg over the pairs of this measure and

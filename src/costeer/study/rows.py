@@ -14,6 +14,7 @@ from costeer.study.effects import (
     partial_eta_squared,
 )
 from costeer.study.outcome import EffectRow, PairRow
+from costeer.study.ranks import RankTest
 from costeer.study.ttests import TTest, benjamini_hochberg, significance_mark
 
 
@@ -42,7 +43,7 @@ class About(NamedTuple):
 
     Attributes:
         measure: Name of the measure.
-        analysis: `published`, `within` or `mixed`.
+        analysis: As in `tests.csv`.
         n: Number of values or participants.
         note: Design, and who was left out.
     """
@@ -132,6 +133,34 @@ def _pair_row(
         d_av_low=test.d_av.low,
         d_av_high=test.d_av.high,
         hedges_correction=hedges_correction(test.df),
+    )
+
+
+def friedman_row(about: About, effect: str, test: RankTest) -> EffectRow:
+    """Return the row of Friedman's test: no second df, no correction."""
+    size = test.effect_size
+    return EffectRow(
+        measure=about.measure,
+        analysis=about.analysis,
+        effect=effect,
+        statistic=test.statistic,
+        df1=test.df,
+        df2=math.nan,
+        epsilon=1.0,
+        p=test.p,
+        p_corrected=test.p,
+        mark=significance_mark(test.p),
+        effect_size=size.value,
+        effect_size_low=size.low,
+        effect_size_high=size.high,
+        effect_size_kind=size.kind,
+        n=about.n,
+        note=joined("chi squared of ranks", test.note, about.note),
+        epsilon_huynh_feldt=1.0,
+        p_huynh_feldt=test.p,
+        generalised_eta_squared=math.nan,
+        generalised_eta_squared_low=math.nan,
+        generalised_eta_squared_high=math.nan,
     )
 
 
