@@ -60,7 +60,9 @@ def effect_row(about: About, effect: str, test: FTest) -> EffectRow:
     p_corrected = _p_value(test, test.epsilon)
     known = math.isfinite(test.statistic)
     size = partial_eta_squared(test.statistic, df1, df2) if known else EffectSize()
-    generalised = generalised_eta_squared(size, test.error_share)
+    generalised = generalised_eta_squared(
+        size, test.error_share, test.df2 / test.df1, df2
+    )
     return EffectRow(
         measure=about.measure,
         analysis=about.analysis,
