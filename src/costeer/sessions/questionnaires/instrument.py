@@ -70,9 +70,7 @@ class Instrument(NamedTuple):
     stop: Stop | None
 
 
-def load_instrument(
-    name: str, language: str, folder: Path | None = None
-) -> Instrument:
+def load_instrument(name: str, language: str, folder: Path | None = None) -> Instrument:
     """A questionnaire in a language.
 
     Args:
@@ -146,7 +144,9 @@ def _missing(definition: Definition, words: Words, texts: Texts) -> list[str]:
     for item in definition.items:
         if item.kind == "pairs":
             missing += [
-                f"{name}.title" for name in item.options if "title" not in own.get(name, {})
+                f"{name}.title"
+                for name in item.options
+                if "title" not in own.get(name, {})
             ]
             continue
         text = _text_of(item, words, texts)

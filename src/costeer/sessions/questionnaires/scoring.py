@@ -91,7 +91,9 @@ def change(
     baseline: Mapping[str, float], later: Mapping[str, float]
 ) -> dict[str, float]:
     """Rise of each score over the first answers, as `NAME_change`."""
-    return {f"{name}_change": later[name] - baseline.get(name, math.nan) for name in later}
+    return {
+        f"{name}_change": later[name] - baseline.get(name, math.nan) for name in later
+    }
 
 
 def stop_reason(
