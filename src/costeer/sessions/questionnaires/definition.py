@@ -204,10 +204,11 @@ def _items(entry: object) -> list[Item]:
     """The items of one entry: one, or one for each pair that is compared."""
     if not isinstance(entry, dict) or not _NAME.fullmatch(str(entry.get("name", ""))):
         raise ValueError(f"item {entry!r}: give name, of small letters, and kind")
-    name, kind = str(entry["name"]), entry.get("kind")
+    name, said = str(entry["name"]), entry.get("kind")
     where = f"item {name!r}"
-    if kind not in get_args(Kind):
-        raise ValueError(f"{where}: kind is {kind!r}; give {', '.join(get_args(Kind))}")
+    kind: Kind | None = next((known for known in get_args(Kind) if known == said), None)
+    if kind is None:
+        raise ValueError(f"{where}: kind is {said!r}; give {', '.join(get_args(Kind))}")
     _refuse_unknown(where, entry, {"name", "kind", "required"} | _ITEM_FIELDS[kind])
     required = _flag(where, entry, "required", True)
     if kind == "pairs":
