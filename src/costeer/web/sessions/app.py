@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import time
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
@@ -69,6 +70,7 @@ def _participant_routes(desk: Desk) -> list[BaseRoute]:
     """What the participant's page asks."""
 
     async def answer_state(request: Request) -> Response:
+        desk.page_seen = time.monotonic()
         return await _answered(desk.state)
 
     async def answer_next(request: Request) -> Response:

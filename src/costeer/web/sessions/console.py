@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import shutil
+import time
 from collections.abc import Callable, Mapping
 from datetime import datetime
 from typing import Any
@@ -52,6 +53,7 @@ class Console:
                 "withdrawn": self._session.num_withdrawn(),
                 "attempts": self._attempts(),
                 "checks": self._desk.checked,
+                "page_seen": time.monotonic() - self._desk.page_seen,
                 "disk": {"free": free, "enough": free > SCARCE},
                 "balance": self._balance(),
                 "trouble": self._desk.trouble,
@@ -206,7 +208,8 @@ class Console:
         self._session.withdraw(who)
 
     def check(self) -> None:
-        """Look at the devices."""
+        """Look at the devices; a drive that could not begin is tried again."""
+        self._desk.trouble = ""
         self._desk.checked = [
             {"name": name, "well": well, "told": told, "utc": now().utc}
             for name, well, told in self._desk.devices.checks()
