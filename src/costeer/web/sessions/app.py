@@ -15,6 +15,7 @@ from starlette.routing import BaseRoute, Route, WebSocketRoute
 from starlette.types import ASGIApp
 from starlette.websockets import WebSocket
 
+from costeer.sessions.questionnaires.answers import AnswersError
 from costeer.sessions.session import OutOfStepError
 from costeer.sessions.store import StoreError
 from costeer.web.app import application, hello, hold, json_response
@@ -165,6 +166,8 @@ async def _answered(
         return _refused(409, str(error), now)
     except StoreError as error:
         return _refused(507, str(error))
+    except AnswersError as error:
+        return _refused(400, str(error), {"problems": error.codes()})
     except (ValueError, OSError) as error:
         return _refused(400, str(error))
 
