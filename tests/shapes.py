@@ -10,6 +10,7 @@ MODULES = (
     "costeer.study.anova",
     "costeer.study.lane_keeping",
     "costeer.study.mixed",
+    "costeer.study.ranks",
     "costeer.study.repeated",
     "costeer.study.reversals",
     "costeer.study.rounding",

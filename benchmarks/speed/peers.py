@@ -17,6 +17,7 @@ from benchmarks.speed.timing import Effort, Figure, Outcome, Skipped, figure, se
 from costeer.base import array as xp
 from costeer.base.array import compiled
 from costeer.base.entry import entry
+from costeer.base.extras import install_command
 from costeer.base.integrate import rk4
 from costeer.plant.parameters import CarParameters
 from costeer.plant.vehicle import VehicleInput, VehicleState, vehicle_rate
@@ -31,7 +32,7 @@ AMPLITUDE = 0.01
 
 COMPILED = "costeer's car, compiled"
 PLAIN = "costeer's car, plain Python"
-_INSTALL = "not installed; install it with: pip install 'costeer[bench]'"
+_INSTALL = f"not installed; install it with: {install_command('bench')}"
 
 
 @compiled

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
         steering_wheel_reversal_rate,
     )
     from costeer.api.people import evaluate, fit_driver, population
-    from costeer.api.recordings import load_record
+    from costeer.api.recordings import ReadingWarning, load_record
     from costeer.api.trials import parameters, simulate, study
     from costeer.base.array import compiled
     from costeer.drivers.driver import DriverParameters as Driver
@@ -42,6 +42,7 @@ __all__ = [
     "DriverModel",
     "Method",
     "Predictor",
+    "ReadingWarning",
     "Record",
     "__version__",
     "compiled",
@@ -67,6 +68,7 @@ _PLACES = {
     "DriverModel": "drivers.interface:DriverModel",
     "Method": "methods.interface:Method",
     "Predictor": "intention.predictors.interface:Predictor",
+    "ReadingWarning": "api.recordings:ReadingWarning",
     "Record": "records.columns:TrialRecord",
     "compiled": "base.array:compiled",
     "evaluate": "api.people:evaluate",

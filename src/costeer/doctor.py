@@ -22,7 +22,7 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
-from costeer.base.extras import LIBRARIES, install_command
+from costeer.base.extras import LIBRARIES, install_command, pip_command
 from costeer.devices.wheels.interface import WheelDescription
 from costeer.study.jobs import usable_cores
 
@@ -140,7 +140,7 @@ def check_packages() -> Finding:
     versions = {name: installed_version(name) for name in plain_requirements()}
     absent = [name for name, found in versions.items() if found is None]
     if absent:
-        remedy = "run: pip install costeer"
+        remedy = f"run: {install_command()}"
         return Finding("Packages", "missing", f"no {', '.join(absent)}", remedy)
     detail = ", ".join(f"{name} {found}" for name, found in versions.items())
     return Finding("Packages", "ok", detail)
@@ -178,7 +178,7 @@ def check_numba() -> Finding:
     try:
         doubled = numba.njit(cache=False)(_double)(21.0)
     except Exception as error:  # any failure is the finding
-        remedy = "reinstall: pip install --force-reinstall numba llvmlite"
+        remedy = f"reinstall: {pip_command('install')} --force-reinstall numba llvmlite"
         return Finding("Numba engine", "missing", str(error), remedy)
     seconds = time.perf_counter() - start
     detail = f"compiled and ran in {seconds:.2f} s"
@@ -216,7 +216,7 @@ def check_figures() -> Finding:
         with tempfile.TemporaryFile() as file:
             Figure().savefig(file, format="svg")
     except (OSError, ValueError) as error:
-        remedy = "reinstall: pip install --force-reinstall matplotlib"
+        remedy = f"reinstall: {pip_command('install')} --force-reinstall matplotlib"
         return Finding("Figures", "missing", str(error), remedy)
     return Finding("Figures", "ok", f"{Path(font).name}, backend {get_backend()}")
 

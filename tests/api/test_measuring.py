@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+import warnings
+from pathlib import Path
 
 import numpy as np
 import pandas as pd
@@ -11,6 +13,7 @@ import pytest
 import costeer
 from costeer.study.measures import trial_row
 from tests.study.synthetic import synthetic_record
+from tests.training.synthetic import columns
 
 TIME = np.arange(0.0, 120.0, 1.0 / 60.0)
 SWAY = 0.1 * np.sin(2.0 * math.pi * 0.1 * TIME)
@@ -121,3 +124,41 @@ def test_advice_serves_without_a_command_line_too() -> None:
         costeer.measures({"t": TIME})
     with pytest.raises(ValueError, match=r"multiply it by 0\.001 \(on the command"):
         costeer.measures({"time": 1000.0 * TIME})
+
+
+def contradictory(path: Path) -> Path:
+    """A table with semicolons in which the yaw angle has the wrong sign."""
+    drive = columns(1)
+    moved = drive["longitudinal_velocity"] * drive["yaw_angle"] / 60.0
+    drive["lateral_position"] = np.cumsum(moved)
+    drive["yaw_angle"] = -drive["yaw_angle"]
+    pd.DataFrame(drive).to_csv(path, sep=";", index=False)
+    return path
+
+
+def test_what_looks_wrong_in_a_file_is_a_warning_and_a_note(tmp_path: Path) -> None:
+    path = contradictory(tmp_path / "drive.csv")
+    with warnings.catch_warnings(record=True) as told:
+        warnings.simplefilter("always")
+        found = costeer.measures(path)
+    assert {each.category for each in told} == {costeer.ReadingWarning}
+    assert {each.filename for each in told} == {__file__}
+    words = [str(each.message) for each in told]
+    assert any("semicolons between columns" in each for each in words)
+    assert any("contradict each other in sign" in each for each in words)
+    assert set(words) <= set(found.attrs["notes"])
+
+
+def test_a_file_that_is_read_with_an_assumption_warns(tmp_path: Path) -> None:
+    path = contradictory(tmp_path / "drive.csv")
+    with pytest.warns(costeer.ReadingWarning, match=r"drive.csv: .*semicolons"):
+        costeer.load_record(path)
+
+
+def test_a_judgement_warns_too(tmp_path: Path) -> None:
+    path = contradictory(tmp_path / "drive.csv")
+    with pytest.warns(costeer.ReadingWarning) as told:
+        costeer.evaluate("line-time", path)
+    words = " ".join(str(each.message) for each in told)
+    assert "semicolons between columns" in words
+    assert "contradict each other in sign" in words

@@ -21,6 +21,7 @@ PROMISED = {
     "Driver",
     "Method",
     "Predictor",
+    "ReadingWarning",
     "Record",
     "compiled",
     "evaluate",

@@ -39,7 +39,12 @@ def test_a_trial_record_shows_its_lane_changes(
     write_record(tmp_path / "t.parquet", synthetic_record(length=2500.0))
     assert main(["analyse", str(tmp_path / "t.parquet")]) == 0
     shown = capsys.readouterr().out
-    assert "Lane changes: to -1 right, +1 left" in shown
+    table = shown[shown.index("Lane changes") :].splitlines()
+    assert all(unit in table[2] for unit in ("rms deg/s", "peak deg"))
+    assert "right" in table[4]
+    assert "left" in table[5]
+    (speed,) = (line for line in shown.splitlines() if "mean_speed" in line)
+    assert "km/h" in speed
     assert "num_lane_changes" in shown
 
 

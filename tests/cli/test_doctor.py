@@ -14,6 +14,7 @@ from typing import NamedTuple
 import pytest
 
 from costeer import doctor
+from costeer.base.extras import install_command
 from costeer.cli import main
 from costeer.devices.wheels.interface import WheelDescription
 
@@ -62,7 +63,7 @@ def test_an_absent_package_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(doctor, "version", absent)
     assert doctor.check_packages().status == "missing"
     assert "numba" in doctor.check_packages().detail
-    assert doctor.check_extra("jax").remedy == "pip install 'costeer[jax]'"
+    assert doctor.check_extra("jax").remedy == install_command("jax")
     assert doctor.check_extra("jax").status == "optional"
 
 

@@ -114,4 +114,7 @@ def test_a_drive_too_slow_for_the_simulator_is_fitted_and_not_checked(
     slow = np.full(len(record.columns["time"]), 9.0)
     path = csv(tmp_path / "slow.csv", {**record.columns, "longitudinal_velocity": slow})
     show_fit(path, False, 2, None, None)
-    assert "not checked: the recording's mean speed is 9 m/s" in capsys.readouterr().err
+    assert (
+        "not checked: the recording's mean speed is 32.4 km/h"
+        in capsys.readouterr().err
+    )

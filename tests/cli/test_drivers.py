@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from costeer.cli import driver_fit, main
+from costeer.cli.reading import AS_FOUND
 from costeer.drivers.population import POPULATION_VERSION
 from costeer.loop.scenario import PILOT_SEED
 
@@ -106,7 +107,7 @@ def test_a_fit_is_left_to_its_own_command(
     file, plot = tmp_path / "trial.parquet", tmp_path / "fit.svg"
     words = ("--fit", str(file), "--json", "--jobs", "3", "--plot", str(plot))
     assert drivers(*words) == 0
-    assert asked == [(file, True, 3, plot, None, None)]
+    assert asked == [(file, True, 3, plot, None, None, AS_FOUND)]
 
 
 def test_json_of_a_validation_has_no_nan(capsys: pytest.CaptureFixture[str]) -> None:
@@ -142,7 +143,7 @@ REFUSED = {
     "name that ends in .svg": ("--plot", "drivers.png"),
     "0 is not allowed; give from 1": ("--participants", "0"),
     "-1 is not allowed; give at least 0": ("--seed", "-1"),
-    "speed is 100.0; give a number from 12.0": ("--speed", "100"),
+    "speed is 100 m/s (360 km/h); give a number from 12": ("--speed", "100"),
 }
 
 

@@ -56,7 +56,7 @@ def test_exit_code_of_a_command_is_handed_on() -> None:
         (PermissionError(errno.EACCES, "x", "out"), "choose a place"),
         (FileExistsError(errno.EEXIST, "x", "s/figures"), "in the way: move it"),
         (ValueError("row 1 is '\x1b[2J\x00'"), "row 1 is '?[2J?'\n"),
-        (ModuleNotFoundError("x", name="optax"), "pip install 'costeer[train]'"),
+        (ModuleNotFoundError("x", name="optax"), "[train]'"),
         (ValueError(), "ValueError"),
     ],
 )

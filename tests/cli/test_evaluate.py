@@ -173,3 +173,62 @@ def test_a_function_in_a_file_is_judged(
     assert found["triggers"]["true_triggers"] == 0
     assert evaluate(source, "--predictor", tmp_path / "none.py") == 2
     assert "there is no file" in refusal(capsys)
+
+
+def as_another_lab(source: Path, folder: Path) -> Path:
+    """The drives of the source with other names, units and marks; and its file."""
+    drives = pd.read_csv(source)
+    drives["yaw_angle"] = -np.degrees(drives["yaw_angle"])
+    drives["longitudinal_velocity"] *= 3.6
+    names = {"time": "t", "yaw_angle": "heading", "sequence": "run", "crossing": "x"}
+    path = folder / "lab.txt"
+    drives = drives.rename(columns=names)
+    twice = pd.concat([drives[:101], drives[100:]])
+    twice.to_csv(path, index=False, sep=";", decimal=",")
+    lines = [
+        f"names: {{{', '.join(f'{v}: {k}' for k, v in names.items() if v in drives)}}}",
+        "units: {yaw_angle: deg, longitudinal_velocity: km/h}",
+        "flip: [yaw_angle]",
+    ]
+    (folder / "lab.yaml").write_text("\n".join(lines))
+    return path
+
+
+def test_a_table_of_another_lab_is_judged_as_the_same_drives_in_our_names(
+    source: Path, weights: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    other = as_another_lab(source, tmp_path)
+    judged = ("--weights", weights, "--json")
+    assert evaluate(source, *judged) == 0
+    ours = json.loads(capsys.readouterr().out)
+    words = (other, "--map", tmp_path / "lab.yaml", "--drop-repeated", *judged)
+    assert evaluate(*words) == 0
+    shown = capsys.readouterr()
+    theirs = json.loads(shown.out)
+    assert theirs["samples"]["roc_auc"] == pytest.approx(ours["samples"]["roc_auc"])
+    assert theirs["triggers"] == pytest.approx(ours["triggers"])
+    assert "read as text with semicolons between columns" in shown.err
+    assert "1 rows repeat the time of the row before" in shown.err
+    assert evaluate(*words, "--separator", ";", "--decimal", ",") == 0
+    assert "read as text with" not in capsys.readouterr().err
+
+
+def test_what_is_wrong_with_a_table_is_told_at_its_own_rate_too(
+    weights: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    drive = columns(1)
+    drive["lateral_position"] = np.cumsum(
+        drive["longitudinal_velocity"] * drive["yaw_angle"] / 60.0
+    )
+    drive["yaw_angle"] = -drive["yaw_angle"]
+    path = tmp_path / "flipped.csv"
+    pd.DataFrame(drive)[::3].to_csv(path, index=False)
+    assert evaluate(path, "--weights", weights, "--resample", "--json") == 0
+    assert "contradict each other in sign" in capsys.readouterr().err
+
+
+def test_options_of_tables_without_a_table_are_refused(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    assert evaluate("--simulate", 2, "--map", "lab.yaml", "--drop-repeated") == 2
+    assert "--map and --drop-repeated: this is for tables" in refusal(capsys)

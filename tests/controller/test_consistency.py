@@ -116,6 +116,14 @@ def test_a_lost_sample_does_not_blind_the_verdict(lost: int) -> None:
     assert math.isfinite(verdicts[-1].guidance_pseudo_work)
 
 
+@pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf])
+def test_a_lost_sample_counts_as_no_power(value: float) -> None:
+    conflict = (-1.0, 1.0, 5.0)
+    last = judged([*[conflict] * 70, (value, value, 5.0), conflict])[-1]
+    assert last.guidance_pseudo_work == pytest.approx(-5.0 * 59 / 60)
+    assert last.driver_pseudo_work == pytest.approx(5.0 * 59 / 60)
+
+
 @pytest.mark.parametrize("lost", [0, 1])
 @pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf])
 def test_without_a_torque_the_last_verdict_stays(lost: int, value: float) -> None:
@@ -139,3 +147,19 @@ def test_a_hold_time_of_whole_steps_holds_no_step_more() -> None:
     turned = initial_state()._replace(consistent=False, time_in_verdict=DT)
     verdicts = judged([(1.0, 1.0, 5.0)] * 5, held, turned)
     assert [v.consistent for v in verdicts] == [False] * 2 + [True] * 3
+
+
+def test_a_hold_time_counts_from_the_start_of_the_trial_too() -> None:
+    # Conflict from the first step on; the window is full after one second.
+    held = PARAMETERS._replace(hold_time=2.0)
+    verdicts = judged([(-1.0, 1.0, 5.0)] * 130, held)
+    assert [v.consistent for v in verdicts] == [True] * 120 + [False] * 10
+
+
+@pytest.mark.parametrize(("asked", "whole"), [(3.4, 3), (3.6, 4), (2.6, 3)])
+def test_a_hold_time_is_rounded_to_the_nearest_step(asked: float, whole: int) -> None:
+    held = PARAMETERS._replace(hold_time=asked * DT)
+    turned = initial_state()._replace(consistent=False, time_in_verdict=DT)
+    verdicts = judged([(1.0, 1.0, 5.0)] * 6, held, turned)
+    wanted = [False] * (whole - 1) + [True] * (7 - whole)
+    assert [v.consistent for v in verdicts] == wanted

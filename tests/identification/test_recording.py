@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from costeer.identification.fit import fit_driver
-from costeer.identification.recording import NEEDED, drive_of
+from costeer.identification.recording import NEEDED, doubts_of, drive_of
 from costeer.loop.trial import simulate_trial
 from costeer.plant.parameters import CARS, ColumnParameters
 from costeer.records.columns import TrialRecord
@@ -89,7 +89,7 @@ def test_degrees_are_refused_with_the_factor() -> None:
 
 def test_a_stop_is_refused() -> None:
     record = broken("longitudinal_velocity", lambda v: v.__setitem__(500, 1.0))
-    with pytest.raises(ValueError, match="falls to 1 m/s"):
+    with pytest.raises(ValueError, match=r"falls to 3\.6 km/h"):
         drive_of(record)
 
 
@@ -164,3 +164,21 @@ def test_an_own_car_is_that_of_the_record_and_can_be_named_for_a_table(
     assert drive_of(table(record), str(file)).car == estate
     with pytest.raises(ValueError, match=r"car 'lorry' is not known.*NAME\.yaml"):
         drive_of(table(record), "lorry")
+
+
+def test_a_yaw_from_0_to_2_pi_is_the_same_drive() -> None:
+    whole = table(recorded(1))
+    wrapped = with_columns(whole, yaw_angle=whole.columns["yaw_angle"] % (2.0 * np.pi))
+    np.testing.assert_allclose(
+        drive_of(wrapped).yaw_angle, whole.columns["yaw_angle"], atol=1e-12
+    )
+    assert doubts_of(wrapped) == ["yaw_angle runs from 0 to 2 pi: taken as -pi to pi"]
+
+
+def test_signs_that_contradict_each_other_are_told_with_the_fit() -> None:
+    whole = table(recorded(1))
+    flipped = with_columns(whole, yaw_angle=-whole.columns["yaw_angle"])
+    assert doubts_of(whole) == []
+    told = fit_driver(cut(flipped, slice(0, 12_000))).notes
+    for words in ("yaw_angle and lateral_position contradict", "flip the one"):
+        assert any(words in note for note in told)

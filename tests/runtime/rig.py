@@ -24,7 +24,7 @@ from costeer.runtime.frame import FRAME_COLUMNS, PLACE
 from costeer.runtime.links import Links
 from costeer.runtime.markers import Marker
 from costeer.runtime.setup import PLANT_DT, PLANT_STEPS, DriveSetup
-from costeer.runtime.shared import Shared, close_shared, make_shared
+from costeer.runtime.shared import Rows, Shared, close_shared, make_shared
 
 FOR_EVER = 1e9
 
@@ -100,11 +100,15 @@ class Rig:
 
     def heard(self) -> list[Marker]:
         """Markers since the last time."""
+        return [marker for marker, _ in self.told()]
+
+    def told(self) -> list[tuple[Marker, Rows]]:
+        """The same, each with the rows before which it happened."""
         found = []
         while self._near.poll():
-            word, marker = self._near.recv()
+            word, *values = self._near.recv()
             assert word == "marker"
-            found.append(marker)
+            found.append(tuple(values))
         return found
 
     def kinds(self) -> list[str]:

@@ -72,8 +72,8 @@ class Kept:
     def steps(self, number: int = 1) -> np.ndarray:  # type: ignore[type-arg]
         """Drive on; returns the frames."""
         frames = self.rig.steps(number)
-        for heard in self.rig.heard():
-            self.keeper.mark(heard, self.rig.shared)
+        for marker, place in self.rig.told():
+            self.keeper.mark(marker, self.rig.shared, place)
         return frames
 
     def until(self, fault: Fault) -> None:

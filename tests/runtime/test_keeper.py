@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pyarrow.parquet as pq
 import pytest
 
 from costeer.records.columns import TrialRecord
@@ -14,7 +15,9 @@ from costeer.records.record import read_record
 from costeer.runtime import keeper as rooms
 from costeer.runtime.keeper import Keeper
 from costeer.runtime.setup import DriveSetup
-from tests.runtime.rig import Rig, drive_setup
+from costeer.runtime.stream import record_paths
+from tests.runtime.rig import Rig, drive_setup, wheel_setup
+from tests.waiting import wait_for
 
 
 class Kept:
@@ -33,8 +36,8 @@ class Kept:
     def steps(self, number: int) -> None:
         """Drive on."""
         self.rig.steps(number)
-        for heard in self.rig.heard():
-            self.keeper.mark(heard, self.rig.shared)
+        for marker, rows in self.rig.told():
+            self.keeper.mark(marker, self.rig.shared, rows)
 
     def records(self) -> list[TrialRecord]:
         """Everything that was kept, whole."""
@@ -108,6 +111,36 @@ def test_restart_begins_a_record_with_its_first_row_and_what_was_tuned(
     assert len(second.columns["time"]) == 31
     assert controller(first)["guidance"]["lateral_error_gain"] == 1.5
     assert controller(second)["guidance"]["lateral_error_gain"] == 2.0
+
+
+@pytest.mark.parametrize("taken", [False, True])
+def test_server_that_hears_late_of_a_restart_mixes_no_two_trials(
+    drive: Callable[[DriveSetup], Kept], taken: bool
+) -> None:
+    kept = drive(wheel_setup())
+    kept.ask("start")
+    recorder = kept.keeper._recorder
+    assert recorder is not None
+    kept.rig.steps(60)
+    kept.rig.ask("restart")
+    kept.rig.ask("start")
+    kept.rig.steps(90)  # and nobody has passed on what it said
+    if taken:  # the recorder has seen rows of both
+        wait_for(lambda: recorder._next_frame == kept.rig.shared.frames.written)
+    kept.steps(1)
+    first, second = sorted(kept.records(), key=lambda r: len(r.columns["time"]))
+    np.testing.assert_allclose(first.columns["time"], np.arange(61) / 60)
+    np.testing.assert_allclose(second.columns["time"], np.arange(91) / 60)
+    assert (kinds(first), kinds(second)) == (["started"], ["started"])
+    traces = [read_trace(path) for path in sorted(kept.keeper.kept)]
+    assert sorted(len(np.unique(time)) for time in traces) == [61 * 16, 91 * 16]
+    assert all((np.diff(time) >= 0.0).all() for time in traces)
+
+
+def read_trace(record: Path) -> np.ndarray:  # type: ignore[type-arg]
+    """Times of the trace beside a record."""
+    time: np.ndarray = pq.read_table(record_paths(record).trace)["time"].to_numpy()  # type: ignore[type-arg]
+    return time
 
 
 def test_record_says_what_was_changed_from_what_to_what_in_which_unit_and_when(

@@ -45,6 +45,16 @@ def test_reader_gets_every_row_once_and_in_order() -> None:
     assert here.since(asked)[1][:, 0].tolist() == [18.0, 19.0]
 
 
+def test_reader_that_names_an_end_gets_no_row_after_it() -> None:
+    here = ring(rows=8)
+    for k in range(12):
+        here.put(np.full(3, float(k)))
+    number, rows = here.since(6, until=9)
+    assert (number, rows[:, 0].tolist()) == (9, [6.0, 7.0, 8.0])
+    assert here.since(9, until=9)[1].shape == (0, 3)
+    assert here.since(10, until=90)[1][:, 0].tolist() == [10.0, 11.0]
+
+
 def test_slow_reader_finds_the_newest_rows_and_no_other() -> None:
     here = ring(rows=8)
     for k in range(30):

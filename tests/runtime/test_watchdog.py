@@ -2,14 +2,25 @@
 
 from __future__ import annotations
 
+import inspect
 import os
+import time
+from collections.abc import Callable, Iterator
 
 import numpy as np
 import pytest
 
 from costeer.devices.wheels.interface import WheelDescription
 from costeer.runtime import watchdog
-from costeer.runtime.shared import MAILBOX, Mailbox
+from costeer.runtime.clock import raise_priority
+from costeer.runtime.shared import (
+    MAILBOX,
+    Mailbox,
+    Shared,
+    close_shared,
+    make_shared,
+    open_shared,
+)
 from costeer.runtime.watchdog import PATIENCE, Watch, Watched, orphaned, silence
 
 
@@ -104,3 +115,85 @@ def test_wheel_that_cannot_be_reached_does_not_keep_the_process_alive(
     assert not watch.look(100.5)
     assert watch.look(101.5)
     assert ended == [4711]
+
+
+class Night:
+    """A watchdog that runs in this process; what it does before its first look."""
+
+    def __init__(self, monkeypatch: pytest.MonkeyPatch, shared: Shared) -> None:
+        self.shared, self.naps = shared, 0
+        self.begun: list[str] = []
+        self.levels: list[int] = []
+        for name in ("stay_until_needed_no_more", "prepare_stop", "raise_priority"):
+            monkeypatch.setattr(watchdog, name, self._noting(name))
+        monkeypatch.setattr(watchdog.time, "sleep", self._nap)
+        self.wakes: Callable[[Mailbox], object] = lambda box: box.put(dismissed=1.0)
+
+    def _noting(self, name: str) -> Callable[..., None]:
+        def note(*_: object, level: int = 0) -> None:
+            self.begun.append(name)
+            if level:
+                self.levels.append(level)
+
+        return note
+
+    def _nap(self, duration: float) -> None:
+        assert duration == watchdog.INTERVAL
+        self.naps += 1
+        assert self.naps < 5, "it goes on for ever"
+        if self.naps == 3:
+            self.wakes(self.shared.mailbox)
+
+    def pass_by(self, wheel: WheelDescription | None) -> None:
+        """Watch until there is nothing left to look after."""
+        name = self.shared.memory.name
+        watchdog.run_watchdog(Watched(name, 4711, wheel))
+        close_shared(open_shared(name), unlink=False)  # it is still there for others
+
+
+@pytest.fixture
+def night(monkeypatch: pytest.MonkeyPatch) -> Iterator[Night]:
+    shared = make_shared()
+    shared.mailbox.put(server_time=time.perf_counter() + 1000.0)
+    with monkeypatch.context() as patched:
+        yield Night(patched, shared)
+    close_shared(shared, unlink=True)
+
+
+def test_watchdog_looks_until_it_is_dismissed_and_leaves_the_memory_to_others(
+    night: Night,
+) -> None:
+    before = time.perf_counter()
+    night.pass_by(WHEEL)
+    assert night.naps == 3
+    assert night.begun == [
+        "stay_until_needed_no_more",
+        "prepare_stop",
+        "raise_priority",
+    ]
+    assert night.shared.mailbox.get("watching") == 1.0
+    assert night.shared.mailbox.get("watched_at") > before
+
+
+def test_watchdog_stands_above_the_loop_that_it_watches(night: Night) -> None:
+    night.pass_by(None)
+    loop = inspect.signature(raise_priority).parameters["level"].default
+    assert loop < night.levels[0] < 99 - 10  # and leaves room for the system's own
+    assert "prepare_stop" not in night.begun
+
+
+def test_watchdog_that_nobody_needs_any_more_ends_by_itself(night: Night) -> None:
+    night.wakes = lambda box: box.put(server_time=0.0, armed=0.0)
+    night.pass_by(WHEEL)
+    assert night.naps == 3
+
+
+def test_watchdog_ends_with_the_process_that_it_had_to_end(
+    night: Night, acts: Acts
+) -> None:
+    long_ago = time.perf_counter() - 1000.0
+    night.wakes = lambda box: box.put(armed=1.0, heartbeat=long_ago)
+    night.pass_by(WHEEL)
+    assert night.naps == 3
+    assert acts.done == [4711, "let go"]
+    assert night.shared.mailbox.get("stalled") == 1.0

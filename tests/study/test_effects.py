@@ -2,12 +2,23 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
 import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 from scipy import stats
 
-from costeer.study.effects import cohens_d, cohens_d_z, partial_eta_squared
+from costeer.study.contrasts import one_way
+from costeer.study.effects import (
+    cohens_d,
+    cohens_d_z,
+    generalised_eta_squared,
+    hedges_correction,
+    partial_eta_squared,
+)
+from costeer.study.repeated import repeated_f_test
+from costeer.study.rows import About, effect_row
+from costeer.study.ttests import paired_t_test
 
 DEGREES = st.floats(1.0, 700.0)
 
@@ -19,6 +30,32 @@ def test_eta_interval_is_that_of_confintr() -> None:
     assert size.value == pytest.approx(share, abs=1e-12)
     # The seven printed digits of the share go in, so seven come out.
     assert (size.low, size.high) == pytest.approx((0.8244916, 0.8889573), abs=1e-7)
+
+
+def test_small_sample_correction_is_that_of_hedges_and_olkin() -> None:
+    # Hedges and Olkin (1985): J(10) = Γ(5) / (√5 Γ(4.5)) = 0.922745.
+    assert hedges_correction(10.0) == pytest.approx(0.922745, abs=1e-6)
+    # Their approximation 1 - 3 / (4 df - 1) is off by 0.007 at 2 and less beyond.
+    for df in (2.0, 5.0, 30.0, 600.0):
+        assert hedges_correction(df) == pytest.approx(1 - 3 / (4 * df - 1), abs=8e-3)
+    assert hedges_correction(1.0) == 0.0
+
+
+@given(st.floats(0.0, 1e6), DEGREES, DEGREES, st.floats(0.01, 1.0))
+def test_generalised_share_is_smaller_by_the_errors_of_the_rest(
+    statistic: float, df1: float, df2: float, error_share: float
+) -> None:
+    partial = partial_eta_squared(statistic, df1, df2)
+    size = generalised_eta_squared(partial, error_share, 11.0, df2)
+    # By hand: the effect's sum of squares F df1 / df2 beside an own error of 1, and
+    # all errors of 1 / error_share.
+    explained = statistic * df1 / df2
+    by_hand = explained / (explained + 1.0 / error_share)
+    assert size.value == pytest.approx(by_hand, rel=1e-9, abs=1e-300)
+    assert 0.0 <= size.low <= size.high <= 1.0
+    if error_share == 1.0:
+        assert size[:3] == pytest.approx(partial[:3], rel=1e-9, abs=1e-300)
+    assert size.value <= partial.value * (1.0 + 1e-12)
 
 
 def test_eta_interval_is_that_of_smithsons_spss_script() -> None:
@@ -113,3 +150,23 @@ def test_ninety_five_of_hundred_intervals_hold_the_true_share() -> None:
     sizes = [partial_eta_squared(float(draw), df1, df2) for draw in draws]
     share = sum(size.low <= truth <= size.high for size in sizes) / len(sizes)
     assert share == pytest.approx(0.95, abs=0.014)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("likeness", [0.3, 0.9])
+def test_intervals_of_what_people_share_hold_the_truth(likeness: float) -> None:
+    # 300 studies of 12 participants whose values in two conditions correlate by the
+    # likeness: a share of 0.95 has a standard error of 0.013; three are allowed.
+    means = 0.3 * np.arange(7)
+    explained = float(np.sum((means - means.mean()) ** 2))
+    truth = explained / (explained + 7.0), 0.3 * 6.0
+    rng, held = np.random.default_rng(1), np.zeros(2)
+    for _ in range(300):
+        people = math.sqrt(likeness) * rng.normal(size=(12, 1))
+        values = means + people + math.sqrt(1.0 - likeness) * rng.normal(size=(12, 7))
+        test = repeated_f_test(values, one_way("condition", 7)[0])
+        row = effect_row(About("made up", "within", 12, ""), "condition", test)
+        ends = row.generalised_eta_squared_low, row.generalised_eta_squared_high
+        other = paired_t_test(values[:, 6], values[:, 0]).d_av
+        held += ends[0] <= truth[0] <= ends[1], other.low <= truth[1] <= other.high
+    assert np.all(held / 300 > 0.91)

@@ -21,6 +21,7 @@ from costeer.pages.style import (
     FULL_WIDTH_MM,
     MM_PER_INCH,
     SMALL,
+    STRENGTH_LINES,
     styled,
     svg_text,
 )
@@ -214,6 +215,58 @@ def test_the_band_is_the_interval_of_participants_means(
     mean = trajectories.mean_trajectories(material)["manual", -1]
     assert mean.participants == 3
     assert np.all(mean.half_width >= 0.0)
+
+
+def test_a_difference_is_that_of_the_same_participants_from_their_own_manual() -> None:
+    flat = np.zeros_like(trajectories.TIME)
+    own = {
+        ("manual", -1): trajectories.Own({1: flat, 2: flat + 1.0}, {1: 2, 2: 1}),
+        ("strong-rapid", -1): trajectories.Own(
+            {1: flat + 0.1, 2: flat + 1.3, 3: flat + 9.0}, {1: 2, 2: 2, 3: 2}
+        ),
+        ("weak-rapid", 1): trajectories.Own({1: flat}, {1: 1}),
+    }
+    found = trajectories.differences(own)
+    assert set(found) == {("strong-rapid", -1)}
+    mean = found["strong-rapid", -1]
+    assert (mean.participants, mean.changes) == (2, 4)
+    np.testing.assert_allclose(mean.position, 0.2)
+    # Student's t with one degree of freedom at 0.975 is 12.706; sd of 0.1 and 0.3.
+    np.testing.assert_allclose(mean.half_width, 12.706 * 0.1, rtol=1e-4)
+
+
+def test_differences_are_drawn_below_the_trajectories(material: StudyMaterial) -> None:
+    with styled():
+        exhibit = trajectories.draw(material)
+    assert len(panels(exhibit)) == 12
+    labels = [axes.get_ylabel() for axes in panels(exhibit) if axes.get_ylabel()]
+    assert labels == ["Lateral position [m]", "Minus manual [m]"] * 2
+
+
+def test_without_manual_there_is_no_difference_to_draw(material: StudyMaterial) -> None:
+    changes = material.lane_changes.query("condition != 'manual'")
+    with styled():
+        exhibit = trajectories.draw(material._replace(lane_changes=changes))
+    assert len(panels(exhibit)) == 6
+    assert "own manual" not in exhibit.caption
+
+
+def test_strengths_are_told_apart_without_colour() -> None:
+    assert len(set(STRENGTH_LINES.values())) == len(STRENGTH_LINES)
+
+
+def test_text_of_a_figure_stays_text_in_letters_that_every_browser_has(
+    exhibits: list[Exhibit],
+) -> None:
+    (exhibit,) = (each for each in exhibits if each.name == trajectories.NAME)
+    assert exhibit.figure is not None
+    with styled():
+        svg = svg_text(exhibit.figure, exhibit.name, exhibit.title)
+    texts = re.findall(r"<text[^>]*>([^<]*)</text>", svg)
+    assert "Time from crossing [s]" in texts
+    fonts = re.findall(r"(?:font-family: |px )('[^;\"]*)", svg)
+    assert fonts
+    assert all(font.endswith("', Verdana, Geneva, sans-serif") for font in fonts)
 
 
 def test_missed_lane_changes_count_in_the_lead_times(

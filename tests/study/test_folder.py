@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -13,6 +14,7 @@ from costeer.base.files import write_text
 from costeer.study.folder import (
     LOCK_FILE,
     STUDY_FILE,
+    configuration_hash,
     locked,
     opened_study,
     read_study,
@@ -203,6 +205,43 @@ def test_an_edited_study_file_is_refused(tmp_path: Path) -> None:
     file.write_text(yaml.safe_dump(content))
     with pytest.raises(ValueError, match="its hash does not fit"):
         read_study(tmp_path)
+
+
+WRONG_KINDS = [
+    ({"seed": "abc"}, "seed is 'abc', not a whole number"),
+    ({"seed": True}, "seed is True, not a whole number"),
+    ({"participants": [1]}, "participants is [1], not a whole number"),
+    ({"participants": 2.5}, "participants is 2.5, not a whole number"),
+    ({"length": -5.0}, "length is -5.0, not a number above 0"),
+    ({"length": "8 km"}, "length is '8 km', not a number above 0"),
+    ({"speed": None}, "speed is None, not a number above 0"),
+    ({"conditions": "manual"}, "conditions is 'manual', not a list of texts"),
+    ({"conditions": {"manual": 1}}, "conditions is {'manual': 1}, not a list"),
+    ({"parameters": ["a"]}, "parameters is ['a'], not numbers by name"),
+    ({"parameters": {"a": "b"}}, "parameters is {'a': 'b'}, not numbers by name"),
+    ({"drivers": {}}, "drivers is {}, not a list of texts"),
+    ({"car": 1}, "car is 1, not a text"),
+    ({"order": [1]}, "order is [1], not a list of lists of texts"),
+    ({"car_parameters": [1]}, "car_parameters is [1], not numbers by name or null"),
+    ({"driver_parameters": {"a": 1}}, "driver_parameters is {'a': 1}, not a list"),
+    ({"method": list(range(99))}, "..., not a text"),
+]
+
+
+@pytest.mark.parametrize(("changes", "message"), WRONG_KINDS)
+def test_a_setting_of_another_kind_is_named_although_the_hash_fits(
+    tmp_path: Path, changes: dict[str, object], message: str
+) -> None:
+    begin(tmp_path)
+    file = tmp_path / STUDY_FILE
+    content = yaml.safe_load(file.read_text(encoding="utf-8"))
+    content["configuration"] |= changes
+    content["configuration_hash"] = configuration_hash(content["configuration"])
+    file.write_text(yaml.safe_dump(content))
+    for use in (begin, read_study):
+        with pytest.raises(ValueError, match=re.escape(message)) as error:
+            use(tmp_path)
+        assert str(error.value).startswith(f"{file} cannot be used: ")
 
 
 def test_a_folder_without_a_study_is_not_read(tmp_path: Path) -> None:

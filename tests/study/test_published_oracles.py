@@ -19,8 +19,10 @@ from numpy.typing import NDArray
 from scipy import stats
 
 from costeer.study.anova import FTest, pooled_f_tests
+from costeer.study.answers import answer_tests
 from costeer.study.contrasts import one_way, two_way
 from costeer.study.effects import partial_eta_squared
+from costeer.study.ranks import friedman_test
 from costeer.study.repeated import repeated_f_test
 from costeer.study.ttests import (
     TTest,
@@ -136,6 +138,7 @@ def test_racing_study_has_the_reference_statistics(scale: str) -> None:
     assert within.epsilon == pytest.approx(published["eps_gg"], rel=PRINTED)
     corrected = p_value(within, within.epsilon)
     assert corrected == pytest.approx(published["p_gg"], rel=PRINTED)
+    assert within.huynh_feldt == pytest.approx(published["eps_hf"], rel=PRINTED)
     size = partial_eta_squared(within.statistic, within.df1, within.df2)
     assert size.value == pytest.approx(published["partial_eta2"], rel=PRINTED)
     columns = np.tile(np.arange(5), scores.shape[0])
@@ -143,6 +146,55 @@ def test_racing_study_has_the_reference_statistics(scale: str) -> None:
         pooled_f_tests(scores.ravel(), columns, (effect,))[0], expected["between_anova"]
     )
     assert_pairs(scores, expected)
+    friedman = friedman_test(scores)
+    published = expected["friedman"]
+    assert (friedman.statistic, friedman.p) == pytest.approx(
+        (published["chi2"], published["p"]), rel=PRINTED
+    )
+
+
+def test_answers_of_the_takeover_study_are_tested_scale_by_scale(
+    takeovers: tuple[pd.DataFrame, dict[str, Any]],
+) -> None:
+    table = pd.read_csv(data_folder("leeds_takeover") / "nasa_tlx.csv")
+    answers = table.rename(
+        columns={"task": "condition", "sub_scale": "item", "converted_score": "value"}
+    )
+    found = answer_tests(answers, ("N-back", "No N-back"), reference="No N-back")
+    for scale, expected in takeovers[1]["nasa_tlx"].items():
+        (row,) = (row for row in found.pairs if row[:2] == (scale, "within"))
+        assert (row.mean_first, row.mean_second) == pytest.approx(
+            expected["mean"], rel=PRINTED
+        )
+        paired = expected["paired_t"]
+        assert (row.statistic, row.p) == pytest.approx(
+            (paired["t"], paired["p"]), rel=PRINTED
+        )
+        (test,) = (row for row in found.tests if row[:2] == (scale, "within"))
+        assert (test.n, test.statistic) == (41, pytest.approx(paired["t"] ** 2))
+
+
+def test_the_driver_who_left_the_racing_study_is_named() -> None:
+    answers = pd.read_csv(data_folder("racing_sim_tlx") / "nasa_tlx.csv").rename(
+        columns={"session": "condition", "scale": "item", "score": "value"}
+    )
+    file = data_folder("racing_sim_tlx") / "reference_stats.json"
+    reference = json.loads(file.read_text("utf-8"))
+    found = answer_tests(answers, tuple("12345"), None, total="raw_tlx_mean_of_six")
+    for scale, expected in reference.items():
+        if scale in ("versions", "note"):
+            continue
+        tests = {row.analysis: row for row in found.tests if row.measure == scale}
+        assert tests["friedman"].statistic == pytest.approx(
+            expected["friedman"]["chi2"], rel=PRINTED
+        )
+        assert tests["within"].p_corrected == pytest.approx(
+            expected["rm_anova"]["p_gg"], rel=PRINTED
+        )
+        assert (tests["within"].n, tests["mixed"].n) == (13, 14)
+        assert "left out: P14 (no 4, 5)" in tests["friedman"].note
+        dropped = [row[1:3] for row in found.dropped if row.measure == scale]
+        assert dropped == [("P14", "4"), ("P14", "5")]
 
 
 def assert_pairs(scores: NDArray[np.float64], expected: dict[str, Any]) -> None:

@@ -27,13 +27,14 @@ DRUGS = np.array(
 
 def test_one_way_is_that_of_stata() -> None:
     # Stata, [R] anova, example with repeated(drug): F 24.76, Greenhouse-Geisser
-    # epsilon 0.6049 with p 0.0006.
+    # epsilon 0.6049 with p 0.0006, Huynh-Feldt epsilon 1.0789 "reset to 1.0000".
     test = repeated_f_test(DRUGS, one_way("drug", 4)[0])
     assert (test.df1, test.df2) == (3.0, 12.0)
     assert test.statistic == pytest.approx(24.76, abs=5e-3)
     assert test.epsilon == pytest.approx(0.6049, abs=5e-5)
     p = stats.f.sf(test.statistic, 3.0 * test.epsilon, 12.0 * test.epsilon)
     assert p == pytest.approx(0.0006, abs=5e-5)
+    assert test.huynh_feldt == 1.0
 
 
 @pytest.mark.parametrize("seed", range(5))
@@ -73,7 +74,7 @@ def test_two_levels_give_the_square_of_the_paired_t() -> None:
     test = repeated_f_test(means, one_way("condition", 2)[0])
     paired = stats.ttest_rel(means[:, 0], means[:, 1])
     assert test.statistic == pytest.approx(paired.statistic**2, rel=1e-12)
-    assert test.epsilon == 1.0
+    assert test.epsilon == test.huynh_feldt == 1.0
 
 
 @given(st.integers(0, 2**32 - 1), st.integers(2, 15), st.integers(2, 7))
@@ -82,7 +83,8 @@ def test_epsilon_lies_between_one_contrast_and_sphericity(
 ) -> None:
     means = np.random.default_rng(seed).normal(size=(num_participants, num_cells))
     test = repeated_f_test(means, one_way("condition", num_cells)[0])
-    assert 1.0 / (num_cells - 1) <= test.epsilon <= 1.0
+    lowest = 1.0 / (num_cells - 1)
+    assert lowest <= test.epsilon <= test.huynh_feldt <= 1.0
 
 
 @given(st.integers(0, 2**32 - 1))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import math
 from pathlib import Path
 
@@ -18,6 +19,7 @@ from costeer.study.trial_tables import (
     write_trial_tables,
 )
 from tests.study.synthetic import synthetic_record
+from tests.web.attacks import FORMULAS
 
 
 @pytest.mark.parametrize(
@@ -43,6 +45,16 @@ def test_a_cell_is_exact_or_empty(value: object, text: str) -> None:
 def test_numbers_read_back_bit_for_bit() -> None:
     for value in np.random.default_rng(1).normal(size=100):
         assert float(cell(value)) == value
+
+
+@pytest.mark.parametrize("text", FORMULAS)
+def test_no_spreadsheet_takes_a_text_for_a_formula(tmp_path: Path, text: str) -> None:
+    write_csv(tmp_path / "t.csv", [{"note": text, "gap": -0.5, "unit": "-"}])
+    with (tmp_path / "t.csv").open(newline="") as file:
+        (row,) = csv.DictReader(file)
+    kept = text.replace("\r", "\n")
+    kept = kept if text.startswith("a") else "'" + kept
+    assert row == {"note": kept, "gap": "-0.5", "unit": "-"}
 
 
 def test_a_comma_in_a_text_stays_in_its_cell(tmp_path: Path) -> None:

@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from costeer.study.effects import hedges_correction
 from costeer.study.ttests import (
     benjamini_hochberg,
     independent_t_test,
@@ -36,6 +37,29 @@ def test_independent_test_is_that_of_r() -> None:
     assert (test.df, test.p) == pytest.approx((18.0, 0.07919), abs=5e-6)
     assert (test.low, test.high) == pytest.approx((-3.363874, 0.203874), abs=5e-7)
     assert test.effect_size.kind == "Cohen's d"
+
+
+def test_paired_sizes_are_those_that_lakens_prints() -> None:
+    # Lakens (2013), Frontiers in Psychology 4:863: ten people rate two films; t(9) =
+    # 4.74, d_z 1.50, g_av 1.03, and ESCI's interval of d_av from 0.42 to 1.80.
+    first = np.array([9.0, 7.0, 8.0, 9.0, 8.0, 9.0, 9.0, 10.0, 9.0, 9.0])
+    second = np.array([9.0, 6.0, 7.0, 8.0, 7.0, 9.0, 8.0, 8.0, 8.0, 7.0])
+    test = paired_t_test(first, second)
+    assert test.statistic == pytest.approx(4.74, abs=5e-3)
+    assert test.effect_size.value == pytest.approx(1.50, abs=5e-3)
+    corrected = test.d_av.value * hedges_correction(test.df)
+    assert corrected == pytest.approx(1.03, abs=5e-3)
+    assert test.d_av[1:3] == pytest.approx((0.42, 1.80), abs=5e-3)
+
+
+def test_d_av_of_equal_groups_is_their_d() -> None:
+    # With as many values in both, the pooled variance is the mean of the two.
+    test = independent_t_test(FIRST, SECOND)
+    assert test.d_av[:3] == pytest.approx(test.effect_size[:3], rel=1e-12)
+    swapped = independent_t_test(SECOND, FIRST[:7]).d_av
+    mean = math.sqrt((SECOND.var(ddof=1) + FIRST[:7].var(ddof=1)) / 2.0)
+    difference = SECOND.mean() - FIRST[:7].mean()
+    assert swapped.value == pytest.approx(difference / mean, rel=1e-12)
 
 
 def test_correction_is_that_of_benjamini_and_hochberg_by_hand() -> None:

@@ -56,7 +56,7 @@ def test_a_column_without_a_value_is_absent() -> None:
 
 @pytest.mark.parametrize("name", ["time", "longitudinal_velocity"])
 def test_what_cannot_be_missing_is_named(name: str) -> None:
-    with pytest.raises(ValueError, match=rf"drive.csv has no column {name}"):
+    with pytest.raises(ValueError, match=rf"drive.csv.* no column '?{name}"):
         from_table(**{name: None})
 
 
@@ -212,7 +212,7 @@ def test_a_repeated_time_is_left_out_when_resampled(tmp_path: Path) -> None:
     drive = pd.DataFrame(changed())
     path = tmp_path / "twice.csv"
     pd.concat([drive[:101], drive[100:]]).to_csv(path, index=False)
-    with pytest.raises(ValueError, match=r"delete row 101, .*--resample"):
+    with pytest.raises(ValueError, match=r"delete row 101, .*--drop-repeated"):
         read_recordings([path])
     (made,) = read_recordings([path], resample=True)
     assert any("1 rows repeat the time" in note for note in made.notes)
@@ -249,3 +249,14 @@ def test_a_lane_with_gaps_is_not_needed_beside_crossings() -> None:
     made = recording("a", "a", drive)
     np.testing.assert_array_equal(made.crossing, whole.crossing)
     assert any("lane is empty in some rows" in note for note in made.notes)
+
+
+def test_the_distance_follows_from_the_position_when_resampled_too() -> None:
+    drive = changed(distance_to_adjacent_lane=None)
+    across = np.where(drive["lane"] == 1, 0.0, -3.5)
+    drive |= {"lateral_position": across}
+    slow = {name: values[::3] for name, values in drive.items()}
+    (made,) = recordings_of(TrialRecord({}, slow), "drive.csv", resample=True)
+    assert made.absent == ()
+    known = made.features[:, FEATURES.index("distance_to_adjacent_lane")]
+    np.testing.assert_allclose(known, 1.75)

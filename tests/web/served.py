@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import http.client
+import logging
+import socket
 import threading
 from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, contextmanager
@@ -49,6 +51,30 @@ class FakeSession:
     def client_left(self, role: Role) -> None:
         """Remember who left."""
         self.left.append(role)
+
+
+class Told(logging.Handler):
+    """Keeps what the server, asyncio and threads say of what went wrong."""
+
+    LOGGERS = ("", "uvicorn")  # what uvicorn says does not reach the first
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.tracebacks: list[str] = []
+
+    def emit(self, record: logging.LogRecord) -> None:
+        """Keep a record that bears an exception."""
+        if record.exc_info:
+            self.tracebacks.append(self.format(record))
+
+    def __enter__(self) -> Told:
+        for name in self.LOGGERS:
+            logging.getLogger(name).addHandler(self)
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        for name in self.LOGGERS:
+            logging.getLogger(name).removeHandler(self)
 
 
 class Answer(NamedTuple):
@@ -109,6 +135,13 @@ def fetch(running: Running, path: str, **headers: str) -> Answer:
         return Answer(answer.status, answer.headers, answer.read())
     finally:
         connection.close()
+
+
+def raw(running: Running, text: bytes) -> socket.socket:
+    """A plain connection on which something was sent."""
+    made = socket.create_connection(("127.0.0.1", running.access.port), PATIENCE)
+    made.sendall(text)
+    return made
 
 
 def own_origin(running: Running) -> str:

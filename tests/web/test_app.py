@@ -21,6 +21,7 @@ from costeer.web.pages import file_in, start_page, static_folder
 from costeer.web.serving import Ending, Running, listening
 from costeer.web.session import MOST_FRAMES, Outbox
 from tests.waiting import PATIENCE, wait_for
+from tests.web.attacks import PATHS
 from tests.web.served import FakeSession, fetch, page_files, served, socket_of
 
 
@@ -58,31 +59,7 @@ def test_page_and_files_come_with_their_types(running: Running) -> None:
     assert script.headers["Content-Type"].startswith("text/javascript")
 
 
-@pytest.mark.parametrize(
-    "path",
-    [
-        "/../secret.txt",
-        "/%2e%2e/secret.txt",
-        "/..%2fsecret.txt",
-        "/%2e%2e%2fsecret.txt",
-        "/..%5csecret.txt",
-        "/%252e%252e/secret.txt",
-        "/vendor/../../secret.txt",
-        "/vendor/%2e%2e/%2e%2e/secret.txt",
-        "/.%00./secret.txt",
-        "/main.js%00",
-        "//main.js",
-        "/%2fetc/passwd",
-        "/.hidden",
-        "/vendor",
-        "/vendor/",
-        "/main.js/",
-        "/nothing.js",
-        "/" + 300 * "a",
-        "/" + 300 * "a/",
-        "/%ff",
-    ],
-)
+@pytest.mark.parametrize("path", PATHS)
 def test_no_path_leads_out_of_the_pages_folder(running: Running, path: str) -> None:
     answer = fetch(running, path)
     assert answer.status == 404

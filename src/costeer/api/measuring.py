@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from costeer.api.recordings import Recorded, as_record
+from costeer.api.recordings import File, Recorded, noted, warn_of
 from costeer.base.described import nearest
 from costeer.study import reversals
 from costeer.study.analysis import analyse
@@ -20,25 +20,27 @@ if TYPE_CHECKING:
 
 
 def measures(
-    recording: Recorded, *, lane_width: float = 3.5, **thresholds: float
+    recording: Recorded | File, *, lane_width: float = 3.5, **thresholds: float
 ) -> DataFrame:
     """Measures of driving, or why they are missing.
 
     Args:
-        recording: A record, a data frame or a mapping of arrays: `time` [s] and any
-            other column of a record, in SI units. A column `sequence` tells separate
-            stretches apart.
+        recording: A record, its file, a data frame or a mapping of arrays: `time` [s]
+            and any other column of a record, in SI units. A column `sequence` tells
+            separate stretches apart.
         lane_width: Of both lanes [m].
         **thresholds: Any other field of `study.definitions.MeasureParameters`.
 
     Returns:
         A row for each measure, with value, unit and reason (empty where there is a
         value); of several stretches, by stretch and measure. What should be known
-        before the numbers are trusted stands in `.attrs["notes"]`.
+        before the numbers are trusted stands in `.attrs["notes"]`; what looks wrong,
+        or was assumed of a file, is a `costeer.ReadingWarning` too.
 
     Raises:
         ValueError: If there is no `time`, a column holds what it cannot, or a
             threshold is not known.
+        OSError: If a file cannot be read.
 
     Example:
         >>> import costeer, numpy as np
@@ -61,7 +63,9 @@ def measures(
                 f"from {', '.join(known)}"
             )
     chosen = MeasureParameters(lane_width=lane_width, **thresholds)
-    parts = analyse(as_record(recording), parameters=chosen)
+    record, told = noted(recording)
+    parts = analyse(record, parameters=chosen)
+    warn_of(dict.fromkeys([*told, *(each for p in parts for each in p.doubts)]), 2)
     tables = {
         part.sequence: pd.DataFrame.from_dict(
             {name: each._asdict() for name, each in part.measures.items()},
@@ -73,7 +77,7 @@ def measures(
         (table,) = tables.values()
     else:
         table = pd.concat(tables, names=["sequence"])
-    table.attrs["notes"] = sorted({note for part in parts for note in part.notes})
+    table.attrs["notes"] = sorted({*told, *(n for part in parts for n in part.notes)})
     return table
 
 

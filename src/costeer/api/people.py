@@ -6,19 +6,20 @@ import os
 from collections.abc import Sequence
 from typing import Any
 
-from costeer.api.recordings import File, Recorded, as_record, by_name
+from costeer.api.recordings import File, Recorded, by_name, noted, warn_of
 from costeer.api.trials import SUGGESTED_SPEED
 from costeer.drivers.driver import DriverParameters
 from costeer.drivers.population import participant_driver
 from costeer.identification import fit
 from costeer.identification.fit import DriverFit
+from costeer.identification.recording import doubts_of
 from costeer.intention.predictors.chosen import Judge
 from costeer.intention.predictors.interface import Predictor
 from costeer.loop.outside import any_predictor
 from costeer.plant.parameters import CarParameters
 from costeer.records.columns import TrialRecord
 from costeer.training import evaluate as training
-from costeer.training.recordings import recordings_of
+from costeer.training.recordings import Recording, recordings_of
 
 
 def population(
@@ -47,12 +48,13 @@ def population(
 
 
 def fit_driver(
-    recording: Recorded, car: File | CarParameters | None = None
+    recording: Recorded | File, car: File | CarParameters | None = None
 ) -> DriverFit:
     """The virtual driver who explains a recording of manual driving: docs/fit.md.
 
     Args:
-        recording: A record, a data frame or a mapping of arrays, 60 rows a second.
+        recording: A record, its file, a data frame or a mapping of arrays, 60 rows a
+            second.
         car: That was driven: a name, parameters, or the file of one; None takes the
             record's, else the default car.
 
@@ -66,7 +68,10 @@ def fit_driver(
         >>> fit = costeer.fit_driver(record)
         >>> again = costeer.simulate("manual", length=200, driver=fit.driver)
     """
-    return fit.fit_driver(as_record(recording), by_name(car))
+    record, told = noted(recording)
+    warn_of([*told, *doubts_of(record)], 2)
+    found = fit.fit_driver(record, by_name(car))
+    return found._replace(notes=(*told, *found.notes))
 
 
 def evaluate(
@@ -91,7 +96,8 @@ def evaluate(
 
     Returns:
         Plain numbers, lists and dictionaries: scores over samples and triggers, with
-        95 % intervals over drivers.
+        95 % intervals over drivers. What looks wrong in a recording, or was assumed
+        of it, is a `costeer.ReadingWarning`.
 
     Raises:
         ValueError: If there is no such predictor, or nothing can be judged.
@@ -115,11 +121,11 @@ def evaluate(
     single = isinstance(recordings, str | TrialRecord)
     several = isinstance(recordings, Sequence) and not single
     given: Any = recordings if several else [recordings]  # Any: one or several
-    stretches = [
-        one
-        for place, each in enumerate(given, 1)
-        for one in recordings_of(as_record(each), f"recording {place}", resample)
-    ]
+    stretches: list[Recording] = []
+    for place, each in enumerate(given, 1):
+        record, told = noted(each)
+        stretches += recordings_of(record, f"recording {place}", resample, told)
+    warn_of(dict.fromkeys(n for one in stretches for n in one.notes), 2)
     usual = training.DEFAULTS
     asked = usual._replace(
         triggers=usual.triggers._replace(threshold=threshold), false_per_km=false_per_km

@@ -43,7 +43,7 @@ def bench(
     """Measure the speed of the control step, a trial, a batch or a drive.
 
     Each number is the median of some rounds, with the lowest and the highest. Runs in
-    a clone of the repository; peers come with: pip install 'costeer[bench]'.
+    a clone of the repository; peers come with the extra `bench`, or with `make bench`.
 
     Example:
         costeer bench

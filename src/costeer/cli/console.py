@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import sys
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
+from pathlib import Path
 from typing import Literal
 
 Advance = Callable[[int], None]
@@ -80,6 +81,12 @@ def _tenths(finished: int, total: int) -> int:
 def note(message: str) -> None:
     """Tell the user something on stderr, away from results."""
     print(message, file=sys.stderr, flush=True)
+
+
+def note_all(file: Path, lines: Iterable[str]) -> None:
+    """Tell what a reader should know of a file."""
+    for line in lines:
+        note(f"note on {file}: {line}")
 
 
 def print_table(

@@ -36,8 +36,8 @@ def chosen_wheel(word: str) -> ChosenWheel:
     """The wheel that an option names.
 
     Args:
-        word: auto, keyboard, gamepad, simulated, a number of `costeer wheel list`, or
-            can:BUS:CHANNEL.
+        word: auto, keyboard, gamepad, simulated[:HANDS], a number of `costeer wheel
+            list`, or can:BUS:CHANNEL.
 
     Raises:
         ValueError: If there is no such wheel, or it is not calibrated.
@@ -47,8 +47,8 @@ def chosen_wheel(word: str) -> ChosenWheel:
         return ChosenWheel(input=word)
     if word == "auto":
         return _calibrated_wheel()
-    if word == "simulated":
-        return _simulated_wheel()
+    if word == "simulated" or word.startswith("simulated:"):
+        return _simulated_wheel(word.partition(":")[2])
     return _with_calibration(_named_wheel(word))
 
 
@@ -58,8 +58,20 @@ def _with_calibration(description: WheelDescription) -> ChosenWheel:
     return ChosenWheel("wheel", description, load_calibration(description))
 
 
-def _simulated_wheel() -> ChosenWheel:
-    """A simulated wheel that hands hold straight ahead."""
+def _simulated_wheel(hands: str) -> ChosenWheel:
+    """A simulated wheel.
+
+    Args:
+        hands: Who holds it: empty for hands that keep it straight, `keys`,
+            `virtual[:SEED]`, or a script FILE.csv.
+
+    Raises:
+        ValueError: If there are no such hands.
+        OSError: If the script cannot be read.
+    """
+    from pathlib import Path
+
+    from costeer.devices.wheels.hands import read_script
     from costeer.devices.wheels.simulated import (
         SimulatedWheelParameters,
         SpringHands,
@@ -67,9 +79,23 @@ def _simulated_wheel() -> ChosenWheel:
         true_calibration,
     )
 
+    kind, _, seed = hands.partition(":")
+    if not hands:
+        held: SpringHands | dict[str, object] = SpringHands()
+    elif kind == "keys":
+        held = {"kind": "keys"}
+    elif kind == "virtual" and (seed or "1").isdigit():
+        held = {"kind": "virtual", "seed": int(seed or 1)}
+    elif hands.endswith(".csv"):
+        held = {"kind": "script", "script": read_script(Path(hands))}
+    else:
+        raise ValueError(
+            f"hands '{hands}' of a simulated wheel are not known; give simulated, "
+            "simulated:keys, simulated:virtual[:SEED] or simulated:FILE.csv"
+        )
     return ChosenWheel(
         "wheel",
-        simulated_description(hands=SpringHands()),
+        simulated_description(hands=held),
         true_calibration(SimulatedWheelParameters()),
     )
 
@@ -81,8 +107,8 @@ def _named_wheel(word: str) -> WheelDescription:
         return found_wheels(can=channel)[0]
     if not word.isdigit():
         raise ValueError(
-            f"--wheel is {word!r}; give auto, keyboard, gamepad, simulated, a number "
-            "of `costeer wheel list`, or can:BUS:CHANNEL"
+            f"--wheel is {word!r}; give auto, keyboard, gamepad, simulated[:HANDS], a "
+            "number of `costeer wheel list`, or can:BUS:CHANNEL"
         )
     found = found_wheels()
     number = int(word)

@@ -33,7 +33,8 @@ def drive(
         str,
         typer.Option(
             help="auto (a wheel if there is a calibrated one), keyboard, gamepad, "
-            "simulated, a number of `costeer wheel list`, or can:BUS:CHANNEL."
+            "simulated[:keys, :virtual or :FILE.csv], a number of `costeer wheel "
+            "list`, or can:BUS:CHANNEL."
         ),
     ] = "auto",
     head: Annotated[

@@ -10,9 +10,11 @@ import typer
 
 from costeer.cli.console import note, print_table, progress
 from costeer.cli.driver_tables import refuse_bad_plot
+from costeer.cli.reading import AS_FOUND, Told, way_of
 
 if TYPE_CHECKING:
     from costeer.identification.fit import DriverFit
+    from costeer.identification.parameters import Estimate
     from costeer.records.columns import TrialRecord
     from costeer.validation.fitted import Check
 
@@ -24,6 +26,7 @@ def show_fit(
     plot: Path | None,
     out: Path | None,
     car: str | None = None,
+    told: Told = AS_FOUND,
 ) -> None:
     """Fit a driver, check the fit by simulation, print and draw both.
 
@@ -34,24 +37,27 @@ def show_fit(
         plot: Draw the estimates into this SVG, if given.
         out: Write the driver into this YAML file, if given.
         car: That was driven, a name or a file; None takes the record's.
+        told: How a table is to be read.
 
     Raises:
         ValueError: If the recording cannot be fitted.
         OSError: If a file cannot be read or written.
     """
     from costeer.identification.fit import fit_driver
-    from costeer.records.record import read_recording
+    from costeer.identification.recording import doubts_of
     from costeer.study.jobs import default_jobs
     from costeer.validation.fitted import REPEATS, check_fit
 
     refuse_bad_plot(plot)
     if out is not None and out.suffix not in (".yaml", ".yml"):
         raise ValueError(f"--out is {str(out)!r}; a driver is a file: give NAME.yaml")
-    record = read_recording(path)
+    record, notes = _recording(path, told)
     try:
         fit = fit_driver(record, car)
     except ValueError as error:
-        raise ValueError(f"{path}: {error}") from error
+        doubts = [*notes, *doubts_of(record)]
+        raise ValueError("; ".join([f"{path}: {error}", *doubts])) from error
+    fit = fit._replace(notes=(*notes, *fit.notes))
     try:
         with progress("check by simulation", REPEATS) as advance:
             checks = check_fit(
@@ -68,6 +74,23 @@ def show_fit(
         _print_json(path, fit, checks)
     else:
         _print_tables(path, fit, checks)
+
+
+def _recording(path: Path, told: Told) -> tuple[TrialRecord, list[str]]:
+    """The recording under costeer's names, and what was assumed of it."""
+    from costeer.records.adaptation import adapted, cleaned
+    from costeer.records.record import read_noted
+
+    way = way_of(told)
+    record, notes = read_noted(path, way.reading)
+    try:
+        columns, renamed = adapted(record.columns, way.adaptation)
+    except ValueError as error:
+        raise ValueError(f"{path}: {error}") from error
+    if "time" in columns:
+        columns, dropped = cleaned(columns, way.adaptation)
+        renamed += dropped
+    return record._replace(columns=columns), [*notes, *renamed]
 
 
 def _write(out: Path, fit: DriverFit, path: Path) -> None:
@@ -104,10 +127,7 @@ def _draw(plot: Path, fit: DriverFit, record: TrialRecord) -> None:
 def _print_tables(path: Path, fit: DriverFit, checks: list[Check]) -> None:
     print_table(
         ["parameter", "unit", "estimate", "95 % from", "to", "how"],
-        [
-            [e.name, e.unit, *(f"{v:.4g}" for v in (e.value, e.low, e.high)), e.how]
-            for e in fit.estimates
-        ],
+        [_estimate_row(each) for each in fit.estimates],
         f"Driver of {path}: {fit.lane_keeping:.0f} s of lane keeping, "
         f"{fit.num_changes} lane changes",
     )
@@ -134,6 +154,20 @@ def _print_tables(path: Path, fit: DriverFit, checks: list[Check]) -> None:
             typer.echo(f"not compared: {check.measure}: {check.reason}")
     for line in _notes(fit):
         note(f"note: {line}")
+
+
+def _estimate_row(estimate: Estimate) -> list[str]:
+    """An estimate in people's units."""
+    from costeer.pages.units import shown
+
+    unit, factor = shown(estimate.unit)
+    numbers = (estimate.value, estimate.low, estimate.high)
+    return [
+        estimate.name,
+        unit,
+        *(f"{number * factor:.4g}" for number in numbers),
+        estimate.how,
+    ]
 
 
 def _notes(fit: DriverFit) -> list[str]:

@@ -73,12 +73,14 @@ def show_drawn(asked: Asked, speed: float) -> None:
 
 def _print_drawn(asked: Asked, drawn: list[dict[str, float]]) -> None:
     from costeer.drivers.population import FACTORS
+    from costeer.pages.units import shown
     from costeer.validation.drawn import spreads
 
-    rows = [
-        [s.parameter, s.unit, *(f"{value:.4g}" for value in (s.low, s.median, s.high))]
-        for s in spreads(drawn)
-    ]
+    rows = []
+    for s in spreads(drawn):
+        unit, factor = shown(s.unit)
+        numbers = (f"{value * factor:.4g}" for value in (s.low, s.median, s.high))
+        rows.append([s.parameter, unit, *numbers])
     print_table(
         ["parameter", "unit", "5 %", "median", "95 %"],
         rows,

@@ -7,6 +7,7 @@ from typing import Annotated, NamedTuple
 
 import typer
 
+from costeer.cli.reading import AS_FOUND, OPTIONS, Told, options_given, reads_tables
 from costeer.cli.units import parse_speed
 from costeer.cli.validate import at_least, in_range
 
@@ -34,7 +35,7 @@ _UNNAMED = "costeer drivers without --validate, --threshold or --fit"
 _TASKS = {
     "--fit": _Task(
         "fits a driver to a recording",
-        frozenset({"--car", "--plot", "--out", "--jobs", "--json"}),
+        frozenset({"--car", "--plot", "--out", "--jobs", "--json", *OPTIONS}),
     ),
     "--threshold": _Task(
         "drives the pilot drivers, who have a seed of their own",
@@ -61,6 +62,7 @@ _TASKS = {
 }
 
 
+@reads_tables
 def drivers(
     validate: Annotated[
         bool, typer.Option("--validate", help="Drive manually; M1 to M12.")
@@ -112,6 +114,7 @@ def drivers(
         ),
     ] = None,
     json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
+    told: Told = AS_FOUND,
 ) -> None:
     """Draw, plot, validate and fit virtual drivers.
 
@@ -139,13 +142,14 @@ def drivers(
         "--speed": speed,
         "--jobs": jobs,
     }
-    _refuse_useless(task, [name for name, value in given.items() if value is not None])
+    named = [name for name, value in given.items() if value is not None]
+    _refuse_useless(task, [*named, *options_given(told)])
     if data is not None and out is None:
         raise ValueError("--data is for the report; add --out DIR, or leave it out")
     if fit is not None:
         from costeer.cli.driver_fit import show_fit
 
-        show_fit(fit, json, jobs, plot, out, car)
+        show_fit(fit, json, jobs, plot, out, car, told)
         return
     from costeer.cli import driver_tables as tables
 

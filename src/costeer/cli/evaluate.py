@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from costeer.cli.console import note
+from costeer.cli.reading import AS_FOUND, Told, reads_tables
 from costeer.cli.validate import at_least, fraction, in_range, positive
 
 if TYPE_CHECKING:
@@ -59,10 +60,11 @@ _TRIGGERS = (
 )
 
 
+@reads_tables
 def evaluate(
     files: Annotated[
         list[Path] | None,
-        typer.Argument(help="Trial records or tables (CSV, Parquet)."),
+        typer.Argument(help="Trial records, tables (text, Parquet, Arrow)."),
     ] = None,
     weights: Annotated[
         Path | None, typer.Option(help="File of `costeer train`; else the shipped one.")
@@ -122,6 +124,7 @@ def evaluate(
         Path | None, typer.Option(help="Folder of report, figures and tables.")
     ] = None,
     json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
+    told: Told = AS_FOUND,
 ) -> None:
     """Judge the intention network on records or a table.
 
@@ -135,12 +138,13 @@ def evaluate(
         costeer evaluate out/study/records/01-manual.parquet --json
         costeer evaluate --simulate 24 --seed 7 --compare --ablations --out out/judged
         costeer evaluate drives.csv --predictor line-time --without head_yaw
+        costeer evaluate others.csv --map lab.yaml --resample
         costeer evaluate --dataset ngsim_lc --data data --compare
     """
     from costeer.cli import evaluation as parts
     from costeer.training.evaluate import DEFAULTS
 
-    source = parts.Source(files or [], simulate, seed, dataset, data, resample)
+    source = parts.Source(files or [], simulate, seed, dataset, data, resample, told)
     parts.check_source(source)
     chosen = parts.Chosen(predictor, weights, compare, tuple(without or ()), ablations)
     parts.check_chosen(chosen)

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from costeer.cli.console import note, print_table, progress
+from costeer.cli.reading import AS_FOUND, Told, refuse_without_files, way_of
 
 if TYPE_CHECKING:
     from costeer.training.assessment import Asked, Assessment
@@ -27,6 +28,7 @@ class Source(NamedTuple):
         dataset: Name of a set of real driving.
         data: Folder of the sets; None for that of COSTEER_DATA.
         resample: Bring tables of another rate to 60 Hz.
+        told: How tables are to be read.
     """
 
     files: list[Path]
@@ -35,6 +37,7 @@ class Source(NamedTuple):
     dataset: str | None
     data: Path | None
     resample: bool = False
+    told: Told = AS_FOUND
 
 
 class Chosen(NamedTuple):
@@ -103,6 +106,7 @@ def check_source(source: Source) -> None:
         raise ValueError("--data is the folder of --dataset; add --dataset NAME")
     if source.resample and not source.files:
         raise ValueError("--resample is for tables; name them")
+    refuse_without_files(bool(source.files), source.told)
 
 
 def check_chosen(chosen: Chosen) -> None:
@@ -147,7 +151,8 @@ def read_source(source: Source) -> list[Recording]:
         return read_dataset(source.dataset, folder)
     from costeer.training.recordings import read_recordings
 
-    return read_recordings(source.files, source.resample)
+    way = way_of(source.told)
+    return read_recordings(source.files, source.resample, way.adaptation, way.reading)
 
 
 def judge(

@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from costeer.cli.console import note_all
+
 if TYPE_CHECKING:
     from costeer.records.record import TrialRecord
 
@@ -35,9 +37,10 @@ def export(
     if file.name.endswith(".wheel.arrow"):
         _save_trace(file, out, to)
         return
-    from costeer.records.record import read_recording
+    from costeer.records.record import read_noted
 
-    record = read_recording(file)
+    record, told = read_noted(file)
+    note_all(file, told)
     out.parent.mkdir(parents=True, exist_ok=True)
     try:
         _write(record, out, to)

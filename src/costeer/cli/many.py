@@ -11,6 +11,9 @@ if TYPE_CHECKING:
 
 _ENDINGS = (".csv", ".txt", ".dat", ".tsv", ".parquet", ".arrow", ".feather", ".gz")
 
+_FROM_OUTSIDE = ("file", "sequence", "notes", "error")
+"""Columns of a table that hold what others have written."""
+
 
 def drives(paths: Sequence[Path]) -> list[Path]:
     """The files, and the tables in folders among them, in order of name.
@@ -55,6 +58,7 @@ def write_rows(out: Path, found: Sequence[Analysis], refused: dict[str, str]) ->
     import pandas as pd
 
     from costeer.base.files import write_text
+    from costeer.study.trial_tables import without_formula
 
     rows: list[dict[str, object]] = [
         {
@@ -69,4 +73,7 @@ def write_rows(out: Path, found: Sequence[Analysis], refused: dict[str, str]) ->
         for each in found
     ]
     rows += [{"file": file, "error": why} for file, why in refused.items()]
-    write_text(out, pd.DataFrame(rows).to_csv(index=False))
+    table = pd.DataFrame(rows)
+    for name in table.columns.intersection(_FROM_OUTSIDE):
+        table[name] = table[name].map(without_formula, na_action="ignore")
+    write_text(out, table.to_csv(index=False))

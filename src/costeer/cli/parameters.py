@@ -55,7 +55,7 @@ def parameters(
             [
                 each.name,
                 f"{each.value:.6g}",
-                each.unit,
+                _unit(each),
                 f"{each.allowed.low:.4g}",
                 f"{each.allowed.high:.4g}",
                 each.meaning,
@@ -63,6 +63,18 @@ def parameters(
             ]
             for each in shown
         ],
+    )
+
+
+def _unit(each: Described) -> str:
+    """The unit in which `--set` takes it, and the value in that of people."""
+    from costeer.pages.units import shown
+
+    unit, factor = shown(each.unit)
+    return (
+        each.unit
+        if factor == 1.0
+        else f"{each.unit} ({each.value * factor:.4g} {unit})"
     )
 
 

@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from costeer.cli.console import note_all
+
 if TYPE_CHECKING:
     from starlette.types import ASGIApp
 
@@ -34,15 +36,17 @@ def replay(
     Example:
         costeer replay out/trial.parquet
     """
-    from costeer.records.record import read_recording
+    from costeer.records.record import read_noted
     from costeer.web.app import replay_app
     from costeer.web.replay import replay_of
     from costeer.web.security import access_for
     from costeer.web.serving import open_page, serve
 
     access = access_for(host, port)
+    record, told = read_noted(file)
+    note_all(file, told)
     try:
-        shown = replay_of(read_recording(file), file.name)
+        shown = replay_of(record, file.name)
     except ValueError as error:
         raise ValueError(_with_file(file, error)) from error
 

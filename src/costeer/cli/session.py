@@ -6,7 +6,7 @@ import signal
 from contextlib import suppress
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, NamedTuple
 
 import typer
 
@@ -15,6 +15,7 @@ from costeer.cli.console import note, print_table
 if TYPE_CHECKING:
     from starlette.types import ASGIApp
 
+    from costeer.sessions.plan import Plan
     from costeer.web.security import Access
     from costeer.web.serving import Running
     from costeer.web.sessions.desk import Desk, Devices
@@ -51,6 +52,13 @@ def session(
         bool,
         typer.Option("--browser/--no-browser", help="With run: open the console."),
     ] = True,
+    haste: Annotated[
+        float,
+        typer.Option(
+            help="With run and --wheel simulated:virtual: seconds of a drive in a "
+            "second."
+        ),
+    ] = 1.0,
 ) -> None:
     """Run a study with people: plan, questionnaires, drives, data.
 
@@ -64,7 +72,7 @@ def session(
     """
     acts = {
         "new": partial(_new, folder, plan),
-        "run": partial(_run, folder, wheel, head, (host, port), browser),
+        "run": partial(_run, folder, _Lab(wheel, head, haste), (host, port), browser),
         "status": partial(_status, folder),
         "withdraw": partial(_withdraw, folder, participant),
     }
@@ -107,22 +115,30 @@ def _new(folder: Path, plan: Path | None) -> None:
     note(f"costeer session run {folder}")
 
 
-def _run(
-    folder: Path, wheel: str, head: str, where: tuple[str, int], browser: bool
-) -> None:
+class _Lab(NamedTuple):
+    """What participants drive with, in words."""
+
+    wheel: str
+    head: str
+    haste: float
+
+
+def _run(folder: Path, lab: _Lab, where: tuple[str, int], browser: bool) -> None:
     """Serve both pages until Ctrl-C."""
     from costeer.sessions.session import Session
     from costeer.web.security import access_for
     from costeer.web.serving import listening
     from costeer.web.sessions.desk import Desk
 
-    devices = _devices(wheel, head, folder)
+    devices = _devices(lab, folder)
     access = access_for(*where)
     listening(*where).close()  # before anything is opened
     for name in ("SIGTERM", "SIGHUP", "SIGBREAK"):
         if hasattr(signal, name):
             signal.signal(getattr(signal, name), _stop)
-    desk = Desk(Session(folder), devices)
+    session = Session(folder)
+    _compile(session.plan, devices)
+    desk = Desk(session, devices)
     try:
         _serve(desk, access, browser)
     finally:
@@ -134,11 +150,23 @@ def _run(
         raise typer.Exit(1)
 
 
+def _compile(plan: Plan, devices: Devices) -> None:
+    """Have the machine code of all drives ready before anybody waits for it."""
+    from costeer.runtime.cabin import Cabin
+    from costeer.runtime.setup import DriveSetup
+    from costeer.sessions.plan import session_steps, trial_of
+
+    steps = [step for step in session_steps(plan, 1) if step.drives]
+    trials = {step.method: trial_of(plan, step, 1) for step in steps}
+    for trial in trials.values():
+        Cabin(DriveSetup(trial, devices.wheel, devices.calibration)).warm_up()
+
+
 def _stop(*_: object) -> None:
     raise KeyboardInterrupt
 
 
-def _devices(wheel: str, head: str, folder: Path) -> Devices:
+def _devices(lab: _Lab, folder: Path) -> Devices:
     """What participants drive with.
 
     Raises:
@@ -148,13 +176,14 @@ def _devices(wheel: str, head: str, folder: Path) -> Devices:
     from costeer.doctor import lab_checks
     from costeer.web.sessions.desk import Devices
 
-    chosen = chosen_wheel(wheel)
+    chosen = chosen_wheel(lab.wheel)
     return Devices(
         input=chosen.input,
         wheel=chosen.description,
         calibration=chosen.calibration,
-        head=lambda who: chosen_head(head, who),
-        checks=lambda: lab_checks(folder, chosen.description, head),
+        head=lambda who: chosen_head(lab.head, who),
+        checks=lambda: lab_checks(folder, chosen.description, lab.head),
+        haste=lab.haste,
     )
 
 

@@ -8,6 +8,13 @@ from typing import TYPE_CHECKING, Annotated, NamedTuple
 
 import typer
 
+from costeer.cli.reading import (
+    AS_FOUND,
+    Told,
+    reads_tables,
+    refuse_without_files,
+    way_of,
+)
 from costeer.cli.validate import at_least, in_range, one_of
 
 if TYPE_CHECKING:
@@ -30,6 +37,7 @@ class Source(NamedTuple):
         dataset: Name of a set of real driving.
         data: Folder of the sets.
         resample: Bring tables of another rate to 60 Hz.
+        told: How tables are to be read.
     """
 
     files: list[Path]
@@ -39,12 +47,16 @@ class Source(NamedTuple):
     dataset: str | None
     data: Path | None
     resample: bool
+    told: Told = AS_FOUND
 
 
+@reads_tables
 def train(
     files: Annotated[
         list[Path] | None,
-        typer.Argument(help="Trial records or tables (CSV, Parquet) to learn from."),
+        typer.Argument(
+            help="Trial records, tables (text, Parquet, Arrow) to learn from."
+        ),
     ] = None,
     out: Annotated[Path, typer.Option(help="File of weights to write.")] = Path(
         "out/intention.npz"
@@ -97,6 +109,7 @@ def train(
     jobs: Annotated[
         int | None, typer.Option(help="Threads to simulate with.", callback=at_least(1))
     ] = None,
+    told: Told = AS_FOUND,
 ) -> None:
     """Fit the intention network on records.
 
@@ -110,7 +123,7 @@ def train(
         costeer train drives.csv --start out/intention.npz --out out/tuned.npz
     """
     threads = jobs or os.cpu_count() or 1
-    source = Source(files or [], simulate, seed, threads, dataset, data, resample)
+    source = Source(files or [], simulate, seed, threads, dataset, data, resample, told)
     _check_source(source, start is not None)
     _check_place(out)
     _check_together(fit, start, hidden, steps)
@@ -148,6 +161,7 @@ def _check_source(source: Source, tunes: bool) -> None:
             "--dataset and --data go together: the name of a set and the folder that "
             "holds it"
         )
+    refuse_without_files(bool(source.files), source.told)
     alone = not source.files and source.dataset is None
     if alone and not tunes and source.simulate < FEWEST_DRIVERS:
         raise ValueError(
@@ -164,7 +178,8 @@ def _recordings(source: Source) -> list[Recording]:
     from costeer.training.recordings import read_recordings
     from costeer.training.simulation import simulate_recordings
 
-    found = read_recordings(source.files, source.resample)
+    way = way_of(source.told)
+    found = read_recordings(source.files, source.resample, way.adaptation, way.reading)
     if source.dataset is not None and source.data is not None:
         found += read_dataset(source.dataset, source.data)
     print_notes(found)

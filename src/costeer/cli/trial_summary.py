@@ -43,7 +43,7 @@ def summary_rows(record: TrialRecord, measures: Row) -> list[tuple[str, str, str
     return [
         ("duration", number(measures["duration"], 1), "s"),
         ("distance", number(measures["distance"], 0), "m"),
-        ("mean speed", number(measures["mean_speed"], 2), "m/s"),
+        ("mean speed", number(_kmh(measures["mean_speed"]), 1), "km/h"),
         ("overtaking events", number(measures["num_events"], 0), ""),
         ("lane changes", number(measures["num_lane_changes"], 0), ""),
         ("lane departures", number(measures["num_lane_departures"], 0), ""),
@@ -58,6 +58,10 @@ def summary_rows(record: TrialRecord, measures: Row) -> list[tuple[str, str, str
         ("inconsistencies", number(measures["num_inconsistencies"], 0), ""),
         *_faults(record.metadata),
     ]
+
+
+def _kmh(speed: object) -> float:
+    return 3.6 * speed if isinstance(speed, float) else math.nan
 
 
 def _faults(about: Mapping[str, object]) -> list[tuple[str, str, str]]:

@@ -17,7 +17,7 @@ from costeer.identification.parameters import (
     NotIdentified,
     with_value,
 )
-from costeer.identification.recording import drive_of
+from costeer.identification.recording import doubts_of, drive_of
 from costeer.identification.signals import Drive
 from costeer.identification.steering import fit_steering
 from costeer.identification.stretches import (
@@ -104,7 +104,7 @@ def fit_driver(
         prediction_error=errors,
         whiteness=whiteness,
         white_limit=white_limit,
-        notes=tuple(steering.notes),
+        notes=(*doubts_of(record), *steering.notes),
     )
 
 

@@ -25,6 +25,7 @@ from costeer.plant.parameters import (
 from costeer.plant.road import lane_at, lane_centre
 from costeer.records.checks import check_time, converted
 from costeer.records.columns import COLUMNS_BY_NAME, TrialRecord
+from costeer.records.contradictions import contradictions, unwrapped
 from costeer.records.plausible import suspicions
 
 Record = TypeVar("Record")
@@ -62,6 +63,7 @@ def drive_of(record: TrialRecord, car: str | CarParameters | None = None) -> Dri
             out.
         OSError: If the file of the car cannot be read.
     """
+    record = record._replace(columns=unwrapped(record.columns)[0])
     signals = _needed(record)
     _check_manual(record)
     _check_sampling(signals["time"])
@@ -86,6 +88,12 @@ def drive_of(record: TrialRecord, car: str | CarParameters | None = None) -> Dri
         column=column,
         dt=DT,
     )
+
+
+def doubts_of(record: TrialRecord) -> list[str]:
+    """What looks wrong in a recording but does not forbid a fit."""
+    columns, told = unwrapped(record.columns)
+    return [*told, *contradictions(columns)]
 
 
 def _column(record: TrialRecord, name: str) -> NDArray[Any]:  # Any: of its own kind
@@ -155,7 +163,8 @@ def _check_sampling(time: Signal) -> None:
 def _check_values(signals: dict[str, Signal]) -> None:
     for each in suspicions(signals):
         raise ValueError(
-            f"{each.words}; multiply it by {each.factor:.6g} before the fit"
+            f"{each.words}; multiply it by {each.factor:.6g} before the fit (on the "
+            f"command line: --scale {each.column}={each.factor:.6g})"
         )
     largest = float(np.abs(signals["driver_torque"]).max())
     if largest < _LEAST_TORQUE:
@@ -166,8 +175,8 @@ def _check_values(signals: dict[str, Signal]) -> None:
     slowest = float(signals["longitudinal_velocity"].min())
     if slowest < _SLOWEST:
         raise ValueError(
-            f"longitudinal_velocity falls to {slowest:.3g} m/s; a fit needs driving "
-            f"at {_SLOWEST:g} m/s or more throughout: cut the recording"
+            f"longitudinal_velocity falls to {slowest * 3.6:.3g} km/h; a fit needs "
+            f"driving at {_SLOWEST * 3.6:g} km/h or more throughout: cut the recording"
         )
 
 

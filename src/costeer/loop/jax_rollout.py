@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from costeer.base.array import Real
+from costeer.base.extras import install_command
 from costeer.drivers.interface import AnyDriver, DriverNoise
 from costeer.drivers.population import VIRTUAL
 from costeer.loop.parameters import LoopParameters
@@ -44,7 +45,7 @@ def _jax() -> Any:  # Any: the module, which a plain install lacks
         import jax
     except ModuleNotFoundError as error:
         raise ModuleNotFoundError(
-            "jax is not installed; install it with: pip install 'costeer[jax]', or "
+            f"jax is not installed; install it with: {install_command('jax')}, or "
             "choose the engine numba or python",
             name="jax",
         ) from error

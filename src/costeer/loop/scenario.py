@@ -151,11 +151,7 @@ def check_setup(setup: TrialSetup) -> None:
             what = "a whole number" if name in _WHOLE else "a number"
             raise ValueError(f"{name} is {value!r}; give {what}")
         if not allowed.low <= value <= allowed.high:
-            raise ValueError(
-                f"{name} is {value}; give a number from {allowed.low} to "
-                f"{allowed.high} {allowed.unit}".removesuffix(" -")
-                + (", or 70km/h on the command line" if name == "speed" else "")
-            )
+            raise ValueError(_out_of_range(name, value, allowed))
     if not isinstance(setup.car, CarParameters):
         _check_choice("car", setup.car, tuple(CARS))
     trial_driver_model(setup)
@@ -170,6 +166,18 @@ def check_setup(setup: TrialSetup) -> None:
                 f"trigger time {time} is not possible; give seconds from the start, "
                 "0 or more"
             )
+
+
+def _out_of_range(name: str, value: Real, allowed: _Range) -> str:
+    low, high, unit = allowed
+    if name == "speed":
+        return (
+            f"speed is {value:.4g} m/s ({value * 3.6:.4g} km/h); give a number from "
+            f"{low:g} to {high:g} m/s ({low * 3.6:.4g} to {high * 3.6:.4g} km/h), or "
+            "70km/h on the command line"
+        )
+    told = f"{name} is {value}; give a number from {low} to {high} {unit}"
+    return told.removesuffix(" -")
 
 
 def check_study_seed(seed: int) -> None:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import difflib
 import html
-import math
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -29,7 +28,8 @@ USUAL = (
 )
 """Signals that a figure shows, as far as the record has them."""
 
-_DEGREES = {"rad": "deg", "rad/s": "deg/s", "rad/s²": "deg/s²"}
+_ALONG = ("longitudinal_velocity", "lead_velocity")
+"""Speeds in km/h; sideways metres per second say more."""
 _PANEL_MM, _AROUND_MM = 21.0, 14.0
 _CHANGING = "lane_changing"
 _UNIT_RANGE = ("haptic_gain", "crossing_probability")
@@ -167,13 +167,15 @@ def _says_something(values: NDArray[Any]) -> bool:
 
 
 def _panel(axes: Axes, columns: Columns, name: str, unit: str) -> None:
-    """Draw one signal; angles in degrees, whole numbers and flags as steps."""
+    """Draw one signal in people's units, whole numbers and flags as steps."""
+    from costeer.pages import units
     from costeer.pages.style import INK, RULE, SHADE
 
     time, values = columns["time"], columns[name]
     shown = np.ma.filled(values.astype(float), np.nan)
-    if unit in _DEGREES:
-        shown, unit = shown * 180.0 / math.pi, _DEGREES[unit]
+    if unit != "m/s" or name in _ALONG:
+        unit, factor = units.shown(unit)
+        shown = shown * factor
     style = "default" if values.dtype.kind == "f" else "steps-post"
     if "mode" in columns:
         changing = columns["mode"] == _CHANGING

@@ -7,6 +7,7 @@ apart. Strength is a hue, duration a shade of it; manual driving is grey everywh
 from __future__ import annotations
 
 import io
+import re
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from typing import Any, NamedTuple
@@ -32,17 +33,22 @@ SHADE = "#ececec"
 
 STRENGTH_COLOURS = {"manual": "#5f5f5f", "strong": "#0072B2", "weak": "#D55E00"}
 STRENGTH_LINES: dict[str, tuple[float, tuple[float, ...]]] = {
-    "manual": (0.0, ()),
+    "manual": (0.0, (1.0, 1.2)),
     "strong": (0.0, ()),
     "weak": (0.0, (4.0, 1.5)),
 }
-"""Offset and dashes: weak is told from strong without colour too."""
+"""Offset and dashes: the three are told apart without colour too."""
 
 SIGNAL_COLOURS = {"driver": "#009E73", "guidance": "#CC79A7", "gap": "#1a1a1a"}
 """Two agents at one wheel, distinct from the colours of the conditions."""
 
+_FONT = "DejaVu Sans"
+_QUOTED_FONT = re.compile(rf"'{_FONT}[^']*'")
+_FALLBACK = "Verdana, Geneva, sans-serif"
+"""Text of an SVG stays text, laid out in DejaVu Sans; the first two are as wide."""
+
 _RC: dict[Any, Any] = {  # Any: matplotlib's keys are one long Literal
-    "font.family": ["DejaVu Sans"],
+    "font.family": [_FONT],
     "font.size": NORMAL,
     "axes.titlesize": NORMAL,
     "axes.labelsize": NORMAL,
@@ -74,7 +80,7 @@ _RC: dict[Any, Any] = {  # Any: matplotlib's keys are one long Literal
     "legend.borderaxespad": 0.2,
     "text.color": INK,
     "mathtext.fontset": "dejavusans",
-    "svg.fonttype": "path",
+    "svg.fonttype": "none",
     "path.simplify": True,
 }
 
@@ -207,7 +213,7 @@ def interval_bar(
 
 
 def svg_text(figure: Figure, name: str, title: str) -> str:
-    """Return a figure as SVG; the same figure gives the same text.
+    """Return a figure as SVG, its text as text; the same figure gives the same bytes.
 
     Args:
         figure: Drawn inside `styled`.
@@ -221,4 +227,4 @@ def svg_text(figure: Figure, name: str, title: str) -> str:
             format="svg",
             metadata={"Date": None, "Creator": None, "Title": title},
         )
-    return text.getvalue()
+    return _QUOTED_FONT.sub(rf"\g<0>, {_FALLBACK}", text.getvalue())

@@ -130,7 +130,7 @@ def _way_out(time: NDArray[np.float64], row: int) -> str:
     if time[row] == time[row - 1]:
         return (
             f"delete row {row}, which repeats the one before (on the command line: "
-            "analyse --drop-repeated, evaluate and train --resample)"
+            "--drop-repeated)"
         )
     return "sort the rows or split the recording at a column 'sequence'"
 

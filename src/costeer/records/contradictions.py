@@ -153,8 +153,8 @@ def _lanes(known: Mapping[str, Series]) -> list[str]:
         return [
             f"lateral_position jumps by {steps[row]:.3g} m in row {row + 1}: is it "
             "measured from the centre of the lane driven in? It counts from the left "
-            "lane's centre, else no lane change is found (costeer analyse: "
-            "--join-lanes)"
+            "lane's centre, else no lane change is found (on the "
+            "command line: --join-lanes)"
         ]
     if "lane" not in known:
         return []
@@ -222,7 +222,7 @@ def _median(values: Series) -> float:
 
 def _scaled(name: str, factor: float) -> str:
     return (
-        f"if so, multiply it by {factor:.6g} (costeer analyse: "
+        f"if so, multiply it by {factor:.6g} (on the command line: "
         f"--scale {name}={factor:.6g})"
     )
 
@@ -234,6 +234,6 @@ def _degrees(name: str) -> str:
 def _signs(one: str, other: str) -> str:
     return (
         f"{one} and {other} contradict each other in sign; left is positive: flip the "
-        f"one that is not (costeer analyse: --scale {one}=-1 or --scale "
+        f"one that is not (on the command line: --scale {one}=-1 or --scale "
         f"{other}=-1)"
     )

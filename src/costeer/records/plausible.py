@@ -48,7 +48,8 @@ class Suspicion(NamedTuple):
 
 
 def suspicions(columns: Columns) -> list[Suspicion]:
-    """Columns whose values do not look like SI units."""
+    """Columns whose values do not look like SI units; those of text are left out."""
+    columns = {n: values for n, values in columns.items() if values.dtype.kind in "fiu"}
     found = [
         Suspicion(name, f"{name} looks like {other}, expected {unit}", factor)
         for name, (largest, unit, other, factor) in _PLAUSIBLE.items()
@@ -59,6 +60,15 @@ def suspicions(columns: Columns) -> list[Suspicion]:
         words = f"{_ANGLE} looks like degrees, expected rad"
         found.append(Suspicion(_ANGLE, words, radians(1.0)))
     return found
+
+
+def unit_doubts(columns: Columns) -> list[str]:
+    """What does not look like SI units, in words, with what would mend it."""
+    return [
+        f"{each.words}; if so, multiply it by {each.factor:.6g} (on the command line: "
+        f"--scale {each.column}={each.factor:.6g})"
+        for each in suspicions(columns)
+    ]
 
 
 def _largest(values: NDArray[np.float64]) -> float:

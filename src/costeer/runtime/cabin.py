@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from costeer.base.described import value_at
 from costeer.base.packing import leaf_names, packed
 from costeer.devices.wheels.calibration import observer_parameters
+from costeer.devices.wheels.hands import Seen
 from costeer.devices.wheels.interface import Wheel, WheelReading
 from costeer.loop.parameters import LoopParameters
 from costeer.loop.person import PersonInput, initial_motion
@@ -224,7 +225,25 @@ class Cabin:
             memory.held,
             memory.row,
         )
+        self._show(controls)
         return memory.row
+
+    def _show(self, controls: Controls) -> None:
+        """Let the hands on a simulated wheel see the drive."""
+        look = getattr(self.wheel, "see", None)
+        if look is None:
+            return
+        look(
+            Seen(
+                row=self.memory.row,
+                car=self.car,
+                road=self._parameters.road,
+                intended_angle=self.hands.intended_angle,
+                grip=self.hands.grip,
+                accelerator=controls.accelerator,
+                brake=controls.brake,
+            )
+        )
 
     def _given(self, controls: Controls) -> PersonInput:
         """Hands and foot move; the rest is passed on."""

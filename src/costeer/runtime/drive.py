@@ -30,7 +30,7 @@ from costeer.runtime.links import Links
 from costeer.runtime.markers import Kind, Marker
 from costeer.runtime.process import run_realtime
 from costeer.runtime.setup import DriveSetup, check_drive
-from costeer.runtime.shared import close_shared, make_shared
+from costeer.runtime.shared import Rows, close_shared, make_shared, next_rows
 from costeer.runtime.states import Fault, Loss, RunState
 from costeer.runtime.watchdog import Watch, Watched, stands_still
 
@@ -271,9 +271,9 @@ class Drive:
         if not self.is_ending:
             self._tell_stalled()
 
-    def _mark(self, marker: Marker) -> None:
-        """Keep and pass on a marker."""
-        self._keeper.mark(marker, self.shared)
+    def _mark(self, marker: Marker, rows: Rows | None = None) -> None:
+        """Keep and pass on a marker; one of the loop says before which rows it was."""
+        self._keeper.mark(marker, self.shared, rows or next_rows(self.shared))
         self._listener.marker(marker)
 
     def _tell_error(self, text: str) -> None:

@@ -40,7 +40,7 @@ from costeer.runtime.setup import (
     drive_parameters,
     leader_draws,
 )
-from costeer.runtime.shared import Shared
+from costeer.runtime.shared import Shared, next_rows
 from costeer.runtime.states import Fault, RunState
 from costeer.runtime.trace import Tracer
 from costeer.runtime.watchdog import stands_still
@@ -85,6 +85,7 @@ class Driving:
         self._setup = setup
         self._links = links
         self._clock = clock
+        self._shared = shared
         self._mailbox, self._frames = shared.mailbox, shared.frames
         self._tracer = Tracer(shared.trace)
         self._cabin = Cabin(setup, self._is_released)
@@ -311,8 +312,9 @@ class Driving:
                 self._mark(Marker("error", note=str(error)))
 
     def _mark(self, marker: Marker) -> None:
-        """Tell the server what happened, with the time of the trial."""
-        self._links.commands.send(("marker", marker._replace(time=self._time)))
+        """Tell the server what happened, when in the trial, and before which rows."""
+        timed = marker._replace(time=self._time)
+        self._links.commands.send(("marker", timed, next_rows(self._shared)))
 
     def _do_stop(self) -> None:
         if self._stop_at < NEVER:

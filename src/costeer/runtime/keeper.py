@@ -16,7 +16,7 @@ from costeer.runtime.choices import (
 from costeer.runtime.markers import Marker
 from costeer.runtime.recorder import Recorder, drive_metadata
 from costeer.runtime.setup import DriveSetup, drive_columns
-from costeer.runtime.shared import Shared
+from costeer.runtime.shared import Rows, Shared
 from costeer.runtime.stream import (
     RecordPaths,
     RecordStream,
@@ -61,7 +61,7 @@ class Keeper:
         self._halt = halt
         self._chosen = first_choice(setup)
         self._recorder: Recorder | None = None
-        self._first = (0, 0)
+        self._first = Rows()
         self._is_halted = False
         self._finishing: list[threading.Thread] = []
         self._early: list[Marker] | None = None
@@ -73,12 +73,18 @@ class Keeper:
             with tempfile.TemporaryFile(dir=record.parent):
                 pass
 
-    def mark(self, marker: Marker, shared: Shared) -> None:
-        """Take a marker: it goes into the record, and begins or ends one."""
+    def mark(self, marker: Marker, shared: Shared, rows: Rows) -> None:
+        """Take a marker: it goes into the record, and begins or ends one.
+
+        Args:
+            marker: What happened.
+            shared: Memory of the drive.
+            rows: Before which it happened; this process may hear of it later.
+        """
         self._chosen = followed(self._chosen, marker)
         if marker.kind == "restarted":
-            self._first = (shared.frames.written, shared.trace.written)
-            self.finish(waits=False)
+            self._first = rows
+            self.finish(rows)
         if marker.kind == "started" and self._recorder is None and self._record:
             self._early = []
             self.retry(shared)
@@ -127,8 +133,12 @@ class Keeper:
         paths = record_paths(next_free(record))
         return RecordStream(paths, described, drive_columns(self._setup))
 
-    def finish(self, waits: bool = True) -> None:
-        """Make the record of a trial that is over whole, in a thread of its own."""
+    def finish(self, until: Rows | None = None) -> None:
+        """Make the record of a trial that is over whole, in a thread of its own.
+
+        Args:
+            until: Where the next trial begins; None if none does.
+        """
         if self._early is not None:
             self._early = None
             self._lose("nothing of a trial could be recorded")
@@ -138,14 +148,14 @@ class Keeper:
         recorder, self._recorder = self._recorder, None
         if recorder is None:
             return
-        thread = threading.Thread(target=self._finish, args=(recorder, waits))
+        thread = threading.Thread(target=self._finish, args=(recorder, until))
         thread.start()
         self._finishing.append(thread)
 
-    def _finish(self, recorder: Recorder, waits: bool) -> None:
+    def _finish(self, recorder: Recorder, until: Rows | None) -> None:
         paths = recorder.stream.paths
         try:
-            recorder.stop(waits)
+            recorder.stop(until)
             if finish(paths, recorder.stream.num_rows):
                 self.kept.append(paths.record)
         except (OSError, ValueError) as error:

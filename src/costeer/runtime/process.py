@@ -42,7 +42,7 @@ def run_realtime(setup: DriveSetup, links: Links) -> None:
         gc.disable()
         drive.open_wheel()
         links.commands.send(("ready", told(priority, core)))
-        pace(drive, shared, SPIN_PRIVILEGED if priority.realtime else SPIN)
+        pace(drive, shared, SPIN_PRIVILEGED if priority.realtime else SPIN, setup.haste)
     except (ValueError, OSError, ModuleNotFoundError) as error:
         with suppress(OSError):
             links.commands.send(("failed", str(error)))
@@ -78,9 +78,16 @@ def told(priority: Priority, core: int | None) -> str:
     return priority.detail + ("" if core is None else f", core {core}")
 
 
-def pace(drive: Driving, shared: Shared, spin: float) -> None:
-    """Call the steps at their times until the drive stops; spin so long before [s]."""
-    pacer = Pacer(PLANT_DT, spin)
+def pace(drive: Driving, shared: Shared, spin: float, haste: float = 1.0) -> None:
+    """Call the steps at their times until the drive stops.
+
+    Args:
+        drive: That is stepped.
+        shared: Memory of the drive.
+        spin: How long before a step sleeping ends [s].
+        haste: Seconds of the trial in a second of the clock.
+    """
+    pacer = Pacer(PLANT_DT / haste, spin)
     shared.mailbox.put(heartbeat=time.perf_counter(), armed=1.0)
     lateness = 0.0
     while not drive.stopping:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import threading
 import time
 from collections.abc import Callable
@@ -15,12 +16,12 @@ from costeer.loop.parameters import DT, LoopParameters
 from costeer.loop.scenario import is_assisted
 from costeer.loop.trial import trial_metadata, trial_predictor
 from costeer.records.columns import COLUMNS
-from costeer.records.metadata import PERSON
+from costeer.records.metadata import PERSON, VIRTUAL
 from costeer.runtime.frame import FRAME, PLACE
 from costeer.runtime.markers import Marker
 from costeer.runtime.patience import STOP_PATIENCE
-from costeer.runtime.setup import DriveSetup, drive_parameters
-from costeer.runtime.shared import Shared
+from costeer.runtime.setup import DriveSetup, drive_parameters, is_virtual
+from costeer.runtime.shared import Rows, Shared
 from costeer.runtime.states import RunState
 from costeer.runtime.stream import RecordStream
 
@@ -48,11 +49,12 @@ def drive_metadata(
         for name, place in TUNED_BY_HAND.items():
             about[name] = known.get(place, about[name])
     hands = "virtual hands" if setup.wheel is None else setup.wheel.name
+    virtual = is_virtual(setup)
     return {
         **about,
         "participant": setup.participant,
-        "driver": f"person, {hands}",
-        "driver_kind": PERSON,
+        "driver": f"{'virtual hands' if virtual else 'person'}, {hands}",
+        "driver_kind": VIRTUAL if virtual else PERSON,
         "driver_torque_source": torque_source(setup),
         "intention_source": setup.intention,
         "head_tracker": None if setup.head is None else setup.head.tracker.kind,
@@ -81,7 +83,7 @@ class Recorder:
         stream: Where the trial is kept.
         told: Is called with the reason when nothing can be written, and with "" once
             it can again.
-        first: Numbers of the frame and the row of the trace to begin with.
+        first: Rows to begin with.
     """
 
     def __init__(
@@ -89,7 +91,7 @@ class Recorder:
         shared: Shared,
         stream: RecordStream,
         told: Callable[[str], None],
-        first: tuple[int, int] = (0, 0),
+        first: Rows = Rows(),  # noqa: B008  # it cannot be changed
     ) -> None:
         self._shared = shared
         self.stream = stream
@@ -97,8 +99,9 @@ class Recorder:
         self._trouble = ""
         self._markers: list[Marker] = []
         self._next_frame, self._next_trace = first
-        self._last_time = self._last_traced = -1.0
-        self._waits = True
+        self._until: Rows | None = None
+        self._last_time = -1.0
+        self._seen_until = self._traced_until = -1.0
         self._stop = threading.Event()
         self._lock = threading.Lock()
         self._thread = threading.Thread(target=self._run, daemon=True)
@@ -112,16 +115,17 @@ class Recorder:
         with self._lock:
             self._markers.append(marker)
 
-    def stop(self, waits: bool = True) -> None:
+    def stop(self, until: Rows | None = None) -> None:
         """Keep what is left, then close the streams.
 
         Args:
-            waits: Whether for the torque to fade out; not if the next trial begins.
+            until: Where the next trial begins, which may have been long ago; if none
+                does, the torque fades out first.
 
         Raises:
             OSError: If the rest cannot be written.
         """
-        self._waits = waits
+        self._until = until
         self._stop.set()
         if self._thread.is_alive():
             self._thread.join()
@@ -132,7 +136,7 @@ class Recorder:
     def _run(self) -> None:
         while not self._stop.wait(INTERVAL):
             self._try()
-        if self._waits:
+        if self._until is None:
             self._await_rest()
         self._try()
 
@@ -161,7 +165,10 @@ class Recorder:
 
     def _take(self) -> None:
         """Move new rows of the running trial to the streams."""
-        self._next_frame, frames = self._shared.frames.since(self._next_frame)
+        ends = self._until or (None, None)
+        rings = self._shared
+        self._next_frame, frames = rings.frames.since(self._next_frame, ends[0])
+        frames, self._seen_until = of_one_trial(frames, PLACE["time"], self._seen_until)
         before = max(self._last_time, 0.0)
         rows = self._running(frames)
         if len(rows) and (gap := rows[0, PLACE["time"]] - before) > 1.5 * DT:
@@ -174,22 +181,11 @@ class Recorder:
             self.stream.add(
                 np.hstack([rows[:, : len(COLUMNS)], own]), assisted, markers
             )
-        self._next_trace, traced = self._shared.trace.since(self._next_trace)
-        traced = self._of_this_trial(traced)
+        self._next_trace, traced = rings.trace.since(self._next_trace, ends[1])
+        traced, self._traced_until = of_one_trial(traced, 0, self._traced_until)
         if len(traced):
             self.stream.add_trace(traced)
         self.stream.flush()
-
-    def _of_this_trial(self, traced: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Rows of the trace up to where a new trial begins."""
-        times = np.concatenate([[self._last_traced], traced[:, 0]])
-        back = np.flatnonzero(np.diff(times) < 0.0)
-        kept = traced[: back[0]] if len(back) else traced
-        if len(back):
-            self._last_traced = np.inf
-        elif len(kept):
-            self._last_traced = float(kept[-1, 0])
-        return kept
 
     def _running(self, frames: NDArray[np.float64]) -> NDArray[np.float64]:
         """Frames of the running trial, each moment once, that of its end included."""
@@ -201,3 +197,25 @@ class Recorder:
         if len(running):
             self._last_time = float(running[-1, PLACE["time"]])
         return running
+
+
+def of_one_trial(
+    rows: NDArray[np.float64], time: int, reached: float
+) -> tuple[NDArray[np.float64], float]:
+    """Rows up to where time goes back, as it does where the next trial begins.
+
+    The server may not have heard yet that it has begun.
+
+    Args:
+        rows: Of a ring, shape `(row, column)`.
+        time: Column of the trial's time [s].
+        reached: Time of the rows before them [s]; infinite after the trial.
+
+    Returns:
+        The rows and the time that they reach [s].
+    """
+    times = rows[:, time]
+    back = np.flatnonzero(np.diff(times, prepend=reached) < 0.0)
+    if len(back):
+        return rows[: back[0]], math.inf
+    return rows, float(times[-1]) if len(rows) else reached

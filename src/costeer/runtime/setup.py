@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from costeer.devices.head.calibration import HeadCalibration
 from costeer.devices.wheels.calibration import WheelCalibration
 from costeer.devices.wheels.interface import WheelDescription
+from costeer.devices.wheels.simulated import held_by
 from costeer.drivers.driver import DriverParameters
 from costeer.loop.parameters import DT, LoopParameters
 from costeer.loop.scenario import TrialSetup, loop_parameters, trial_method
@@ -46,6 +47,8 @@ class DriveSetup(NamedTuple):
         needs_page: Whether the drive pauses when no page looks on.
         head: Tracker and calibration of the head; None without one.
         participant: Pseudonym of who drives.
+        haste: Seconds of the trial in a second of the clock; 1 for people, more for
+            rehearsals with virtual hands.
     """
 
     trial: TrialSetup
@@ -56,6 +59,7 @@ class DriveSetup(NamedTuple):
     needs_page: bool = True
     head: HeadCalibration | None = None
     participant: str = "1"
+    haste: float = 1.0
 
 
 def check_drive(setup: DriveSetup) -> None:
@@ -82,11 +86,20 @@ def check_drive(setup: DriveSetup) -> None:
         raise ValueError(
             f"intention '{setup.intention}' is not known; choose one of {known}"
         )
+    if not 1.0 <= setup.haste <= 100.0:
+        raise ValueError(f"haste is {setup.haste:g}; give 1 to 100")
+    if setup.haste > 1.0 and not is_virtual(setup):
+        raise ValueError("only virtual hands on a simulated wheel drive in haste")
     if setup.wheel is not None and setup.calibration is None:
         raise ValueError(
             f"the wheel {setup.wheel.name} is not calibrated; run: costeer wheel "
             "calibrate"
         )
+
+
+def is_virtual(setup: DriveSetup) -> bool:
+    """Whether a virtual driver's hands hold the wheel, and no person's."""
+    return held_by(setup.wheel) == "virtual"
 
 
 @lru_cache(maxsize=64)

@@ -89,11 +89,14 @@ class Ring:
         slot[-1] = number
         self._head[0] = number
 
-    def since(self, first: int) -> tuple[int, NDArray[np.float64]]:
+    def since(
+        self, first: int, until: int | None = None
+    ) -> tuple[int, NDArray[np.float64]]:
         """Whole rows from number `first` on, and the number of the next.
 
         Args:
             first: Number of the first row that is wanted, counted from 0.
+            until: Number of the first that is wanted no more; None for all there are.
 
         Returns:
             Number to ask for next time, and rows, shape `(row, column)`; those that
@@ -101,12 +104,13 @@ class Ring:
         """
         written = self.written
         first = max(first, written - self.size + 1, 0)
-        if first >= written:
-            return max(first, written), self._rows[:0, 1:-1].copy()
-        places = np.arange(first, written)
+        end = written if until is None else min(until, written)
+        if first >= end:
+            return max(first, end), self._rows[:0, 1:-1].copy()
+        places = np.arange(first, end)
         taken = self._rows[places % self.size]
         whole = (taken[:, 0] == places + 1.0) & (taken[:, -1] == places + 1.0)
-        return written, taken[whole, 1:-1]
+        return end, taken[whole, 1:-1]
 
 
 class Mailbox:
@@ -125,6 +129,13 @@ class Mailbox:
             self._numbers[_PLACES[name]] = value
 
 
+class Rows(NamedTuple):
+    """A place in both rings: numbers of the next row of each."""
+
+    frames: int = 0
+    trace: int = 0
+
+
 class Shared(NamedTuple):
     """Everything that is shared, as one process sees it.
 
@@ -139,6 +150,11 @@ class Shared(NamedTuple):
     mailbox: Mailbox
     frames: Ring
     trace: Ring
+
+
+def next_rows(shared: Shared) -> Rows:
+    """Where both rings are now."""
+    return Rows(shared.frames.written, shared.trace.written)
 
 
 def _ring_size(rows: int, columns: int) -> int:

@@ -25,7 +25,7 @@ from costeer.base.files import replacing
 from costeer.records.arrow import METADATA_KEY, batch_checksum, record_schema, to_table
 from costeer.records.checks import validated
 from costeer.records.columns import Column, TrialRecord, with_method_columns
-from costeer.records.metadata import CLOCK_FIELDS
+from costeer.records.metadata import CLOCK_FIELDS, PERSON
 from costeer.records.record import (
     CLOCK_KEY,
     MARKERS_KEY,
@@ -187,7 +187,8 @@ class RecordStream:
         if markers:
             beside[MARKERS_KEY] = told.encode()
         if len(rows):
-            beside[CLOCK_KEY] = json.dumps(self._clock(batch)).encode()
+            if self._metadata["driver_kind"] == PERSON:
+                beside[CLOCK_KEY] = json.dumps(self._clock(batch)).encode()
             self._given_until = batch.column("time")[-1].as_py()
         self._writer.write_batch(batch, custom_metadata=beside)
         self.num_rows += len(rows)

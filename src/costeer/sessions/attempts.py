@@ -42,6 +42,24 @@ class Attempts:
         self._store = session.store
         self._close_left_open(judge)
 
+    def next(self, participant: str, step: Step) -> tuple[int, Path]:
+        """Number and record of the next attempt at a step; nothing is written.
+
+        Raises:
+            StoreError: If the store cannot be read.
+        """
+        rows = self._store.rows(
+            "SELECT coalesce(max(attempt), 0) AS n FROM attempts "
+            "WHERE participant = ? AND step = ?",
+            *(participant, step.id),
+        )
+        attempt = int(rows[0]["n"]) + 1
+        room = "records" if step.kind == "drive" else "practice"
+        suffix = f"-{attempt}" if attempt > 1 else ""
+        folder = self._session.folder / room
+        folder.mkdir(exist_ok=True)
+        return attempt, folder / f"{participant}-{step.id}{suffix}.parquet"
+
     def start(
         self, participant: str, step: str, facts: Mapping[str, Any]
     ) -> tuple[int, Path]:
@@ -60,14 +78,7 @@ class Attempts:
             StoreError: If it cannot be written.
         """
         on = self._session.on(participant, step)
-        taken = [
-            int(row["attempt"]) for row in self._session.standing(participant).attempts
-        ]
-        attempt = max(taken, default=0) + 1
-        room = "records" if on.kind == "drive" else "practice"
-        suffix = f"-{attempt}" if attempt > 1 else ""
-        record = self._session.folder / room / f"{participant}-{step}{suffix}.parquet"
-        record.parent.mkdir(exist_ok=True)
+        attempt, record = self.next(participant, on)
         moment = now()
         with self._store.transaction():
             self._store.put(
@@ -80,7 +91,7 @@ class Attempts:
                     "condition": on.condition,
                     "order": on.order,
                     "state": RUNNING,
-                    "record": f"{room}/{record.name}",
+                    "record": f"{record.parent.name}/{record.name}",
                     "facts": dict(facts),
                     "started": moment.utc,
                     "monotonic": moment.monotonic,

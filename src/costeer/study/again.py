@@ -8,11 +8,10 @@ from pathlib import Path
 
 from costeer.records.metadata import PERSON
 from costeer.records.record import read_record
-from costeer.study.configuration import settings_of
 from costeer.study.folder import locked, read_study, record_path
 from costeer.study.material import find_records
 from costeer.study.report import write_report
-from costeer.study.run import remake_tables
+from costeer.study.run import remake_tables, settings_in
 from costeer.study.trial_tables import TRIALS_FILE
 from costeer.study.trials import study_trials
 
@@ -70,7 +69,7 @@ def trials_without_record(folder: Path) -> list[str]:
     with (folder / TRIALS_FILE).open(encoding="utf-8", newline="") as file:
         there = {(row["participant"], row["condition"]) for row in csv.DictReader(file)}
     missing = []
-    for trial in study_trials(settings_of(read_study(folder).configuration)):
+    for trial in study_trials(settings_in(read_study(folder))):
         if (str(trial.participant), trial.condition) not in there:
             path = record_path(folder, trial.participant, trial.condition)
             state = "damaged or of another study" if path.exists() else "missing"

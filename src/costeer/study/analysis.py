@@ -7,20 +7,16 @@ from typing import NamedTuple
 
 import numpy as np
 
+from costeer.records.adaptation import AS_IT_IS, Adaptation
 from costeer.records.columns import TrialRecord
 from costeer.records.contradictions import contradictions, unwrapped
-from costeer.records.plausible import suspicions
+from costeer.records.plausible import unit_doubts
 from costeer.records.record import read_noted
 from costeer.records.tables import AS_FOUND, Reading
 from costeer.study.definitions import DEFAULTS, Columns, Measure, MeasureParameters
 from costeer.study.gaps import bridged
 from costeer.study.measures import Row, lane_change_rows, parameters_of, prepared
-from costeer.study.recordings import (
-    AS_IT_IS,
-    Adaptation,
-    Stretch,
-    stretches,
-)
+from costeer.study.recordings import Stretch, stretches
 from costeer.study.rounding import rounding
 from costeer.study.sampling import EVEN_ENOUGH, Sampling, evened, sampling
 from costeer.study.trial_measures import trial_measures
@@ -39,6 +35,7 @@ class Analysis(NamedTuple):
         measures: By name as in `trials.csv`; those without a value say why.
         lane_changes: Rows as in `lane_changes.csv`.
         notes: What the reader should know before trusting the numbers.
+        doubts: Those of the notes that name what looks wrong in the file.
     """
 
     source: str
@@ -48,6 +45,7 @@ class Analysis(NamedTuple):
     measures: dict[str, Measure]
     lane_changes: list[Row]
     notes: tuple[str, ...]
+    doubts: tuple[str, ...] = ()
 
 
 def analyse_file(
@@ -91,7 +89,7 @@ def analyse(
 def _analysed(
     recording: TrialRecord, part: Stretch, parameters: MeasureParameters, source: str
 ) -> Analysis:
-    part, notes = _mended(part)
+    part, doubts, notes = _mended(part)
     found = _sampling(part)
     even = recording._replace(columns=dict(evened(part.columns, found)))
     measures = trial_measures(prepared(even, parameters))
@@ -104,18 +102,25 @@ def _analysed(
         lane_changes=lane_change_rows(even, parameters),
         notes=(
             *part.notes,
+            *doubts,
             *notes,
             *_notes(even.columns, found, measures, part.ignored),
         ),
+        doubts=tuple(doubts),
     )
 
 
-def _mended(part: Stretch) -> tuple[Stretch, list[str]]:
-    """A stretch whose yaw is unwrapped and whose short gaps are bridged."""
+def _mended(part: Stretch) -> tuple[Stretch, list[str], list[str]]:
+    """A stretch whose yaw is unwrapped and whose short gaps are bridged.
+
+    Returns:
+        Beside it what looks wrong in it, and notes on its gaps.
+    """
     _sampling(part)
     columns, told = unwrapped(part.columns)
+    doubts = [*told, *contradictions(columns), *unit_doubts(columns)]
     columns, gaps = bridged(columns)
-    return part._replace(columns=columns), [*told, *contradictions(columns), *gaps]
+    return part._replace(columns=columns), doubts, gaps
 
 
 def _sampling(part: Stretch) -> Sampling:
@@ -132,11 +137,7 @@ def _notes(
     measures: dict[str, Measure],
     ignored: Iterable[str],
 ) -> list[str]:
-    notes = [
-        f"{each.words}; if so, multiply it by {each.factor:.6g} (on the command line: "
-        f"--scale {each.column}={each.factor:.6g})"
-        for each in suspicions(columns)
-    ]
+    notes = []
     if found.unevenness > EVEN_ENOUGH:
         notes.append(
             f"unevenly sampled, steps up to {found.longest_step:.3g} s: interpolated "

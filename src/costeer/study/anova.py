@@ -22,6 +22,10 @@ class FTest(NamedTuple):
         df2: Degrees of freedom of the error [-].
         epsilon: Factor on both for lack of sphericity [-]; 1 where it has no place.
         note: Why there is no outcome, or what to know about it; empty if nothing.
+        huynh_feldt: A less strict factor than `epsilon` [-]; 1 where it has no place.
+        error_share: The effect's own error over the errors of all effects and the
+            differences between participants, as sums of squares [-]; NaN in a mixed
+            model, which does not divide them.
     """
 
     statistic: float
@@ -29,6 +33,8 @@ class FTest(NamedTuple):
     df2: float
     epsilon: float = 1.0
     note: str = ""
+    huynh_feldt: float = 1.0
+    error_share: float = 1.0
 
 
 ONE_LEVEL = "fewer than two levels to compare"
@@ -36,7 +42,8 @@ ONE_LEVEL = "fewer than two levels to compare"
 
 def no_f_test(reason: str) -> FTest:
     """Return the outcome of a test that cannot be made."""
-    return FTest(math.nan, math.nan, math.nan, math.nan, reason)
+    nan = math.nan
+    return FTest(nan, nan, nan, nan, reason, nan, nan)
 
 
 def pooled_f_tests(

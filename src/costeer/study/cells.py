@@ -62,7 +62,7 @@ def roster(tables: Iterable[Table]) -> Roster:
     for name in sorted(conditions):
         condition(name)
     return Roster(
-        participants=tuple(sorted(participants, key=_numbers_first)),
+        participants=tuple(sorted(participants, key=numbers_first)),
         conditions=tuple(name for name in CONDITION_NAMES if name in conditions),
     )
 
@@ -167,5 +167,6 @@ def _check_lengths(table: Table) -> None:
         raise ValueError(f"columns differ in length: {lengths}")
 
 
-def _numbers_first(name: str) -> tuple[bool, int, str]:
+def numbers_first(name: str) -> tuple[bool, int, str]:
+    """Key that sorts numbers in their order before other names."""
     return (not name.isdecimal(), int(name) if name.isdecimal() else 0, name)

@@ -95,6 +95,8 @@ def _told(key: str, there: Any, here: Any) -> list[str]:
         return [w for n, pair in pairs for w in _values(f"driver {n}: ", *pair)]
     if isinstance(there, Mapping) and isinstance(here, Mapping):
         return _values("car." if key == "car_parameters" else "", there, here)
+    if key == "speed":
+        there, here = (f"{float(each) * 3.6:.6g} km/h" for each in (there, here))
     return [f"{key} is {there} there, {here} here"]
 
 

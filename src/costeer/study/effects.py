@@ -16,6 +16,8 @@ CONFIDENCE = 0.95
 PARTIAL_ETA_SQUARED = "partial eta squared"
 COHENS_D = "Cohen's d"
 COHENS_D_Z = "Cohen's d_z"
+COHENS_D_AV = "Cohen's d_av"
+GENERALISED_ETA_SQUARED = "generalised eta squared"
 
 _SMALL_T = 1e-12
 """Below this t is zero to all printed digits."""
@@ -102,6 +104,93 @@ def cohens_d_z(
     scale = 1.0 / math.sqrt(num_pairs)
     low, high = (_noncentrality_of_t(statistic, df, p) for p in _tails(confidence))
     return EffectSize(statistic * scale, low * scale, high * scale, COHENS_D_Z)
+
+
+def generalised_eta_squared(
+    partial: EffectSize, error_share: float, rest_df: float, df2: float
+) -> EffectSize:
+    """Share of variance an effect explains, differences between people included.
+
+    Unlike the partial share it means the same within and between subjects. Its odds
+    are those of the partial share times the error's part of all errors; the limits of
+    the two, the second by F, are joined on the scale of logarithms.
+
+    Args:
+        partial: Partial eta squared and its interval.
+        error_share: Sum of squares of the effect's error over those of all errors, NaN
+            where it is not known.
+        rest_df: Degrees of freedom of the other errors, one less than participants.
+        df2: Degrees of freedom of the effect's error, after a correction.
+
+    Source: Olejnik and Algina (2003), Psychological Methods 8, 434 to 447, all factors
+        manipulated; limits joined as in Zou and Donner (2008), Statistics in Medicine
+        27, 1693 to 1702, both taken as independent.
+    """
+    from scipy import stats
+
+    if not math.isfinite(partial.value) or not math.isfinite(error_share):
+        return EffectSize()
+    rest = 1.0 / error_share - 1.0
+    low, high = (
+        1.0 / (1.0 + rest / float(stats.f.ppf(probability, rest_df, df2)))
+        for probability in reversed(_tails(CONFIDENCE))
+    )
+    estimate = partial.value, error_share
+    return EffectSize(
+        value=_share_of_all(*estimate),
+        low=_joined_limit(estimate, (partial.low, low), -1.0),
+        high=_joined_limit(estimate, (partial.high, high), 1.0),
+        kind=GENERALISED_ETA_SQUARED,
+    )
+
+
+def _joined_limit(
+    estimate: tuple[float, float], limit: tuple[float, float], sign: float
+) -> float:
+    """Limit of the generalised share from those of partial share and error's part."""
+    (share, part), (share_end, part_end) = estimate, limit
+    known = 0.0 < min(share, share_end) <= max(share, share_end) < 1.0
+    if not known or sign * (share_end - share) < 0.0:
+        # These odds have no logarithm; or F is so small that both limits are below it.
+        return _share_of_all(share_end, part_end)
+    step = math.hypot(
+        math.log(share / (1.0 - share)) - math.log(share_end / (1.0 - share_end)),
+        math.log(part) - math.log(part_end),
+    )
+    odds = share / (1.0 - share) * part * math.exp(sign * step)
+    return odds / (1.0 + odds)
+
+
+def _share_of_all(share: float, error_share: float) -> float:
+    return share * error_share / (share * error_share + 1.0 - share)
+
+
+def cohens_d_av(size: EffectSize, ratio: float) -> EffectSize:
+    """Difference of means over the root of the two conditions' mean variance.
+
+    Args:
+        size: The same difference in other standard deviations, with its interval.
+        ratio: Those standard deviations over the root of the mean variance [-].
+
+    Source: Cumming (2012), Understanding the New Statistics; paired interval of Algina
+        and Keselman (2003), Educational and Psychological Measurement 63, 537 to 553.
+    """
+    low, high = size.low * ratio, size.high * ratio
+    return EffectSize(size.value * ratio, low, high, COHENS_D_AV)
+
+
+def hedges_correction(df: float) -> float:
+    """Factor that takes the upward bias from a d, and from its limits; below 1.
+
+    Args:
+        df: Degrees of freedom of the standard deviation that d is divided by.
+
+    Source: Hedges (1981), Journal of Educational Statistics 6, 107 to 128; exact.
+    """
+    if df <= 1.0:
+        return 0.0  # d has no mean, and its gamma function no value
+    logarithm = math.lgamma(df / 2.0) - math.lgamma((df - 1.0) / 2.0)
+    return math.exp(logarithm) / math.sqrt(df / 2.0)
 
 
 def _tails(confidence: float) -> tuple[float, float]:

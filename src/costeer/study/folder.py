@@ -21,6 +21,7 @@ from filelock import FileLock, Timeout
 
 from costeer.base.files import prepare_folder, read_whole, write_text
 from costeer.study.changes import refusal
+from costeer.study.kinds import wrong_kind
 
 STUDY_FILE = "study.yaml"
 LOCK_FILE = ".lock"
@@ -63,7 +64,8 @@ def read_study(path: Path) -> StudyFolder:
     """Return what `study.yaml` in the folder says.
 
     Raises:
-        ValueError: If it is missing, unreadable or was edited.
+        ValueError: If it is missing, unreadable or was edited, or a setting is of a
+            kind that it cannot be.
     """
     file = path / STUDY_FILE
     if not file.is_file():
@@ -71,14 +73,17 @@ def read_study(path: Path) -> StudyFolder:
     content = _yaml_mapping(file)
     configuration = content.get("configuration")
     if not isinstance(configuration, dict) or content.get("format") != FORMAT:
-        raise ValueError(_unusable(file, f"it is not of format {FORMAT}"))
+        raise ValueError(unusable(file, f"it is not of format {FORMAT}"))
     try:
         found = configuration_hash(configuration)
     except (TypeError, ValueError, RecursionError) as error:
         why = "its configuration holds what no study has"
-        raise ValueError(_unusable(file, why)) from error
+        raise ValueError(unusable(file, why)) from error
     if content.get("configuration_hash") != found:
-        raise ValueError(_unusable(file, "its hash does not fit its configuration"))
+        raise ValueError(unusable(file, "its hash does not fit its configuration"))
+    wrong = wrong_kind(configuration)
+    if wrong:
+        raise ValueError(unusable(file, wrong))
     return StudyFolder(path, configuration, str(content["configuration_hash"]))
 
 
@@ -90,11 +95,11 @@ def _yaml_mapping(file: Path) -> dict[str, Any]:
     except Exception as error:  # whatever damage makes the parser raise
         where = getattr(error, "problem_mark", None)
         place = f", line {where.line + 1}" if where else ""
-        raise ValueError(_unusable(file, f"it is not YAML{place}")) from error
+        raise ValueError(unusable(file, f"it is not YAML{place}")) from error
     if size > _LARGEST:
-        raise ValueError(_unusable(file, "its references to itself grow too large"))
+        raise ValueError(unusable(file, "its references to itself grow too large"))
     if not isinstance(content, dict):
-        raise ValueError(_unusable(file, "it is not YAML of a study"))
+        raise ValueError(unusable(file, "it is not YAML of a study"))
     return content
 
 
@@ -115,7 +120,8 @@ def _parts(value: Any) -> tuple[Any, ...]:
     return value if isinstance(value, tuple) else (value,)
 
 
-def _unusable(file: Path, why: str) -> str:
+def unusable(file: Path, why: str) -> str:
+    """Say that a file of a study cannot be used, and the way out."""
     return f"{file} cannot be used: {why}; restore it, or choose another folder"
 
 

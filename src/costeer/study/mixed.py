@@ -9,6 +9,7 @@ participants' variance is estimated as zero; elsewhere a test holds both equal.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import NamedTuple
 
@@ -178,5 +179,6 @@ def _wald_tests(
             continue
         chosen = coefficients[part]
         wald = float(chosen @ np.linalg.solve(covariance[part, part], chosen))
-        tests.append(FTest(wald / df1, float(df1), float(df2), note=note))
+        test = FTest(wald / df1, float(df1), float(df2), note=note)
+        tests.append(test._replace(error_share=math.nan))
     return tuple(tests)

@@ -16,16 +16,22 @@ WITHIN = "within"
 MIXED = "mixed"
 """Within subjects too, by a mixed model: where a participant lacks a cell."""
 
+FRIEDMAN = "friedman"
+"""Friedman's test of the ranks of ordinal answers."""
+
+WILCOXON = "wilcoxon"
+"""Wilcoxon's signed-rank test of two conditions, likewise."""
+
 
 class EffectRow(NamedTuple):
     """A row of `tests.csv`: one effect on one measure.
 
     Attributes:
-        measure: As in `trials.csv` or `lane_changes.csv`.
-        analysis: `published`, `within` or `mixed`.
+        measure: As in `trials.csv` or `lane_changes.csv`; an item of a questionnaire.
+        analysis: `published`, `within` or `mixed`; of answers also `friedman`.
         effect: `condition`, `strength`, `change_duration` or
             `strength:change_duration`.
-        statistic: F [-].
+        statistic: F; chi squared of Friedman's test [-].
         df1: Degrees of freedom of the effect, before the correction [-].
         df2: Degrees of freedom of the error, before the correction [-].
         epsilon: Greenhouse-Geisser factor on both [-]; 1 where it has no place.
@@ -38,6 +44,11 @@ class EffectRow(NamedTuple):
         effect_size_kind: Which effect size it is.
         n: Number of values (published) or participants (within, mixed).
         note: Reason for a gap, design, and who was left out.
+        epsilon_huynh_feldt: Huynh-Feldt factor on both, less strict than `epsilon` [-].
+        p_huynh_feldt: p value with it [-].
+        generalised_eta_squared: Estimate [-]; none in a mixed model and of ranks.
+        generalised_eta_squared_low: Lower end of its 95 % interval [-].
+        generalised_eta_squared_high: Upper end of it [-].
     """
 
     measure: str
@@ -56,6 +67,11 @@ class EffectRow(NamedTuple):
     effect_size_kind: str
     n: int
     note: str
+    epsilon_huynh_feldt: float
+    p_huynh_feldt: float
+    generalised_eta_squared: float
+    generalised_eta_squared_low: float
+    generalised_eta_squared_high: float
 
 
 class PairRow(NamedTuple):
@@ -63,7 +79,7 @@ class PairRow(NamedTuple):
 
     Attributes:
         measure: As in `trials.csv` or `lane_changes.csv`.
-        analysis: `published` or `within`.
+        analysis: `published` or `within`; of answers also `wilcoxon`.
         first: A condition or strength.
         second: The one it is compared with.
         mean_first: Mean of the values compared, in the measure's unit.
@@ -71,7 +87,7 @@ class PairRow(NamedTuple):
         mean_difference: First minus second, in the measure's unit.
         low: Lower end of its 95 % interval.
         high: Upper end of it.
-        statistic: t [-].
+        statistic: t; Wilcoxon's sum of the ranks in favour of the first [-].
         df: Degrees of freedom [-].
         p: p value before the correction [-].
         p_corrected: p value after Benjamini-Hochberg over the pairs of this measure and
@@ -84,6 +100,11 @@ class PairRow(NamedTuple):
         n_first: Number of values (published) or participants (within) of the first.
         n_second: The same of the second.
         note: Reason for a gap, and who was left out.
+        d_av: Difference over the root of the mean variance of the two [-].
+        d_av_low: Lower end of its 95 % interval [-].
+        d_av_high: Upper end of it [-].
+        hedges_correction: Factor that takes the bias of small samples from `d_av`, from
+            a d or d_z, and from their intervals [-].
     """
 
     measure: str
@@ -107,6 +128,10 @@ class PairRow(NamedTuple):
     n_first: int
     n_second: int
     note: str
+    d_av: float
+    d_av_low: float
+    d_av_high: float
+    hedges_correction: float
 
 
 class SummaryRow(NamedTuple):

@@ -8,7 +8,7 @@ import numpy as np
 
 from costeer.study.anova import pooled_f_tests
 from costeer.study.cells import Observations, level_indices
-from costeer.study.factorial import Design, compared_pairs
+from costeer.study.factorial import Design
 from costeer.study.outcome import PUBLISHED, EffectRow, PairRow
 from costeer.study.rows import About, PairTest, effect_row, joined, pair_rows
 from costeer.study.ttests import independent_t_test
@@ -40,7 +40,10 @@ def published_effects(
 
 
 def published_pairs(
-    measure: str, observed: Observations, factor: str, names: Sequence[str]
+    measure: str,
+    observed: Observations,
+    factor: str,
+    pairs: Sequence[tuple[str, str]],
 ) -> tuple[PairRow, ...]:
     """Return independent t tests, corrected over the pairs of the measure.
 
@@ -48,10 +51,10 @@ def published_pairs(
         measure: Name of the measure.
         observed: Its values.
         factor: `condition` or `strength`.
-        names: Levels of the factor that the study has.
+        pairs: Levels of the factor to compare, each first minus second.
     """
     comparisons = []
-    for pair in compared_pairs(factor, names):
+    for pair in pairs:
         cells = level_indices(observed, factor, pair)
         first, second = observed.values[cells == 0], observed.values[cells == 1]
         test = independent_t_test(first, second)

@@ -3,42 +3,17 @@
 A recording needs `time` in seconds and any of a trial record's columns in SI units.
 """
 
-from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from costeer.records.adaptation import AS_IT_IS, Adaptation, adapted, cleaned
 from costeer.records.checks import converted
 from costeer.records.columns import COLUMNS_BY_NAME
-from costeer.records.contradictions import joined
 from costeer.records.names import empty_told, groups
-from costeer.records.times import no_time, seconds, without_repeated
+from costeer.records.times import no_time
 from costeer.study.definitions import Columns
-
-
-class Adaptation(NamedTuple):
-    """How the columns of a foreign table become those of a trial record.
-
-    Attributes:
-        renames: Name there to name here.
-        scales: Name here to the factor that gives SI units.
-        sequence: Column, as named there, that tells separate stretches apart; empty
-            if the table is one stretch, or has a column `sequence`, or several
-            participants.
-        join_lanes: Whether the lateral position is from the centre of the lane driven
-            in, and jumps at each crossing.
-        drop_repeated: Whether of rows with the same time only the first is kept.
-    """
-
-    renames: Mapping[str, str] = {}
-    scales: Mapping[str, float] = {}
-    sequence: str = ""
-    drop_repeated: bool = False
-    join_lanes: bool = False
-
-
-AS_IT_IS = Adaptation()
 
 
 class Stretch(NamedTuple):
@@ -77,20 +52,19 @@ def stretches(
         ValueError: If a name is not there, there is no `time`, or a column holds
             what it cannot.
     """
-    key = adaptation.sequence or _key(columns)
-    if key and key not in columns:
-        raise ValueError(_no_column("--sequence", key, columns))
-    renamed = _scaled(_renamed(columns, adaptation.renames), adaptation.scales)
-    known, notes = _known(renamed)
+    renamed, notes = adapted(columns, adaptation)
+    key = _key(renamed)
+    known, unused = _known(renamed)
+    notes += unused
     if "time" not in known:
         raise ValueError(no_time(columns))
     ignored = tuple(k for k in renamed if k not in COLUMNS_BY_NAME and k != key)
     parts = [("", known)]
     if key:
-        notes += empty_told(key, columns[key])
+        notes += empty_told(key, renamed[key])
         parts = [
             (name, {k: values[rows] for k, values in known.items()})
-            for name, rows in groups(columns[key])
+            for name, rows in groups(renamed[key])
         ]
     return tuple(
         _stretch(Stretch(name, part, ignored, tuple(notes)), adaptation)
@@ -108,12 +82,7 @@ def _key(columns: Columns) -> str:
 
 def _stretch(part: Stretch, adaptation: Adaptation) -> Stretch:
     """The stretch as the user wants it: without repeated times, lanes joined."""
-    columns = dict(part.columns)
-    told: list[str] = []
-    if adaptation.drop_repeated:
-        columns, told = without_repeated(columns)
-    if adaptation.join_lanes and "lateral_position" in columns:
-        columns = joined(columns)
+    columns, told = cleaned(part.columns, adaptation)
     return part._replace(columns=columns, notes=(*part.notes, *told))
 
 
@@ -128,49 +97,13 @@ def _known(columns: Columns) -> tuple[dict[str, NDArray[Any]], list[str]]:
     for name in columns:
         if name not in COLUMNS_BY_NAME:
             continue
-        values = columns[name]
-        if name == "time":
-            values, told = seconds(values)
-            notes += [told] if told else []
         try:
-            known[name] = _as_kind(name, values)
+            known[name] = _as_kind(name, columns[name])
         except ValueError as error:
             if name in _NEEDED:
                 raise
             notes.append(f"{name} is not used: {error}")
     return known, notes
-
-
-def _renamed(columns: Columns, renames: Mapping[str, str]) -> dict[str, NDArray[Any]]:
-    for old, new in renames.items():
-        if old not in columns:
-            raise ValueError(_no_column("--rename", old, columns))
-        if new not in COLUMNS_BY_NAME:
-            raise ValueError(
-                f"--rename {old}={new}: {new!r} is no column of a trial record; "
-                f"choose from {', '.join(COLUMNS_BY_NAME)}"
-            )
-    kept = {k: v for k, v in columns.items() if k not in renames.values()}
-    return {renames.get(name, name): values for name, values in kept.items()}
-
-
-def _scaled(columns: Columns, scales: Mapping[str, float]) -> dict[str, NDArray[Any]]:
-    scaled = dict(columns)
-    for name, factor in scales.items():
-        if name not in columns:
-            raise ValueError(_no_column("--scale", name, columns))
-        if not np.isfinite(factor) or factor == 0.0:
-            raise ValueError(
-                f"--scale {name}={factor:g}: the factor must be finite and not 0"
-            )
-        if columns[name].dtype.kind not in "fiu":
-            raise ValueError(f"--scale {name}: the column holds no numbers")
-        scaled[name] = columns[name] * factor
-    return scaled
-
-
-def _no_column(option: str, name: str, columns: Columns) -> str:
-    return f"{option} {name}: there is no such column; there are {', '.join(columns)}"
 
 
 def _as_kind(name: str, values: NDArray[Any]) -> NDArray[Any]:

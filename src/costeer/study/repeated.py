@@ -23,7 +23,8 @@ def repeated_f_test(
         effect: Effect over these cells.
 
     Returns:
-        The test, with the Greenhouse-Geisser factor as `epsilon`.
+        The test, with the Greenhouse-Geisser factor as `epsilon` and that of Huynh
+        and Feldt beside it.
     """
     num_participants, df1 = means.shape[0], effect.contrasts.shape[1]
     if df1 == 0:
@@ -36,13 +37,16 @@ def repeated_f_test(
     if vanishes(deviations, means):
         return no_f_test("no variance of the effect between participants")
     df2 = df1 * (num_participants - 1)
-    error = float(np.sum(deviations**2)) / df2
+    own_error = float(np.sum(deviations**2))
     explained = num_participants * float(mean @ mean) / df1
+    epsilon = greenhouse_geisser(deviations)
     return FTest(
-        statistic=explained / error,
+        statistic=explained / (own_error / df2),
         df1=float(df1),
         df2=float(df2),
-        epsilon=greenhouse_geisser(deviations),
+        epsilon=epsilon,
+        huynh_feldt=huynh_feldt(epsilon, df1, num_participants),
+        error_share=own_error / float(np.sum((means - means.mean(axis=0)) ** 2)),
     )
 
 
@@ -60,3 +64,27 @@ def greenhouse_geisser(
     num_contrasts = covariance.shape[0]
     epsilon = np.trace(covariance) ** 2 / (num_contrasts * np.sum(covariance**2))
     return float(np.clip(epsilon, 1.0 / num_contrasts, 1.0))
+
+
+def huynh_feldt(epsilon: float, num_contrasts: int, num_participants: int) -> float:
+    """Factor on the degrees of freedom, never below that of Greenhouse and Geisser.
+
+    With one group of participants, as here, the correction of Lecoutre (1991) changes
+    nothing. Two participants do not determine it; the stricter factor stands in.
+
+    Args:
+        epsilon: Factor of Greenhouse and Geisser [-].
+        num_contrasts: Degrees of freedom of the effect.
+        num_participants: Those with every cell, two at least.
+
+    Source: Huynh and Feldt (1976), Journal of Educational Statistics 1, 69 to 82;
+        set to 1 where the formula gives more.
+    """
+    effective = num_contrasts * epsilon
+    left = num_participants - 1.0 - effective
+    if num_participants < 3:
+        return epsilon
+    if left <= 0.0:
+        return 1.0
+    ratio = (num_participants * effective - 2.0) / (num_contrasts * left)
+    return float(np.clip(ratio, epsilon, 1.0))

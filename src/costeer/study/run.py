@@ -25,7 +25,14 @@ from costeer.study.configuration import (
     with_files_read,
 )
 from costeer.study.design import Trial
-from costeer.study.folder import StudyFolder, locked, opened_study, read_study
+from costeer.study.folder import (
+    STUDY_FILE,
+    StudyFolder,
+    locked,
+    opened_study,
+    read_study,
+    unusable,
+)
 from costeer.study.jobs import MOST_JOBS, JobsStoppedError, default_jobs, run_jobs
 from costeer.study.trial_tables import write_trial_tables
 from costeer.study.trials import (
@@ -189,13 +196,25 @@ def _option(name: str, value: Any) -> list[str]:  # Any: of a setting
     return [f"--{name}", ",".join(value) if name == "conditions" else str(value)]
 
 
+def settings_in(folder: StudyFolder) -> StudySettings:
+    """The settings of a study in a folder.
+
+    Raises:
+        ValueError: If one is missing or out of range, naming the file.
+    """
+    try:
+        return settings_of(folder.configuration)
+    except ValueError as error:
+        raise ValueError(unusable(folder.path / STUDY_FILE, str(error))) from error
+
+
 def _all_done(
     folder: StudyFolder,
     work: Callable[[Trial], Done],
     jobs: int,
     progress: Callable[[Done], None],
 ) -> list[Done]:
-    trials = study_trials(settings_of(folder.configuration))
+    trials = study_trials(settings_in(folder))
     try:
         return run_jobs(work, trials, jobs, progress)
     except JobsStoppedError as stop:

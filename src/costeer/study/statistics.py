@@ -23,7 +23,12 @@ from costeer.study.cells import (
     roster,
 )
 from costeer.study.dropped import dropped_cells, dropped_lane_changes
-from costeer.study.factorial import Design, one_way_design, two_way_design
+from costeer.study.factorial import (
+    Design,
+    compared_pairs,
+    one_way_design,
+    two_way_design,
+)
 from costeer.study.outcome import (
     DroppedRow,
     EffectRow,
@@ -126,10 +131,10 @@ def _pairs(
 ) -> Iterator[PairRow]:
     factors = (CONDITION, STRENGTH) if measure.by_strength else (CONDITION,)
     for factor in factors:
-        names = levels(everyone.conditions, factor)
-        yield from published_pairs(measure.name, observed, factor, names)
+        pairs = compared_pairs(factor, levels(everyone.conditions, factor))
+        yield from published_pairs(measure.name, observed, factor, pairs)
         yield from within_pairs(
-            measure.name, observed, factor, names, everyone.participants
+            measure.name, observed, factor, pairs, everyone.participants
         )
 
 

@@ -23,16 +23,20 @@ from costeer.study.ttests import mean_or_nan
 
 
 def summaries(
-    measure: str, observed: Observations, everyone: Roster
+    measure: str,
+    observed: Observations,
+    everyone: Roster,
+    factors: Sequence[str] = (CONDITION, STRENGTH),
 ) -> Iterator[SummaryRow]:
-    """Yield a row per level of condition and strength, pooled and by participant.
+    """Yield a row per level of each factor, pooled and by participant.
 
     Args:
         measure: Name of the measure.
         observed: Its values.
         everyone: Participants and conditions of the study.
+        factors: `condition`, `strength` or both.
     """
-    for factor in (CONDITION, STRENGTH):
+    for factor in factors:
         names = levels(everyone.conditions, factor)
         pooled = _pooled(observed, factor, names)
         means = participant_means(observed, everyone.participants, factor, names)

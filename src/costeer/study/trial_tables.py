@@ -114,4 +114,20 @@ def cell(value: object) -> str:
         return "true" if plain else "false"
     if isinstance(plain, float):
         return "" if math.isnan(plain) else repr(plain)
-    return str(plain)
+    return without_formula(str(plain))
+
+
+def without_formula(text: str) -> str:
+    """Text of a cell that no spreadsheet runs: what looks like a formula is quoted.
+
+    Names of files and of stretches come from other people. A carriage return, which
+    would end the row unquoted, becomes a line feed.
+    """
+    lines = text.replace("\r\n", "\n").replace("\r", "\n")
+    if len(lines) < 2 or lines[0] not in "=+-@\t\n":
+        return lines
+    try:
+        float(lines)
+    except ValueError:
+        return f"'{lines}"
+    return lines

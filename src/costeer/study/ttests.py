@@ -11,7 +11,13 @@ from jaxtyping import Float
 from numpy.typing import NDArray
 
 from costeer.study.anova import vanishes
-from costeer.study.effects import CONFIDENCE, EffectSize, cohens_d, cohens_d_z
+from costeer.study.effects import (
+    CONFIDENCE,
+    EffectSize,
+    cohens_d,
+    cohens_d_av,
+    cohens_d_z,
+)
 
 MARKS = ((0.001, "***"), (0.01, "**"), (0.05, "*"))
 """Mark of a p value below each level. Source: Sec. III-F and its figures."""
@@ -30,6 +36,7 @@ class TTest(NamedTuple):
         p: Two-sided p value [-].
         effect_size: Cohen's d or d_z, positive if the first is larger.
         note: Why there is no outcome; empty if there is one.
+        d_av: The difference in standard deviations that both kinds of test share.
     """
 
     mean_first: float
@@ -41,6 +48,7 @@ class TTest(NamedTuple):
     p: float = math.nan
     effect_size: EffectSize = EffectSize()
     note: str = ""
+    d_av: EffectSize = EffectSize()
 
 
 def independent_t_test(
@@ -66,7 +74,8 @@ def independent_t_test(
     error = math.sqrt(variance * (1.0 / first.size + 1.0 / second.size))
     statistic = (means[0] - means[1]) / error
     size = cohens_d(statistic, first.size, second.size)
-    return _student(means, error, df, statistic, size)
+    d_av = cohens_d_av(size, math.sqrt(variance) / _average_sd(first, second))
+    return _student(means, error, df, statistic, (size, d_av))
 
 
 def paired_t_test(
@@ -90,7 +99,14 @@ def paired_t_test(
     error = math.sqrt(float(residuals @ residuals) / df / first.size)
     statistic = float(differences.mean()) / error
     size = cohens_d_z(statistic, first.size)
-    return _student(means, error, df, statistic, size)
+    sd = error * math.sqrt(first.size)
+    d_av = cohens_d_av(size, sd / _average_sd(first, second))
+    return _student(means, error, df, statistic, (size, d_av))
+
+
+def _average_sd(first: NDArray[np.float64], second: NDArray[np.float64]) -> float:
+    """Root of the mean of two variances, in the unit of the values."""
+    return math.sqrt((float(first.var(ddof=1)) + float(second.var(ddof=1))) / 2.0)
 
 
 def _student(
@@ -98,7 +114,7 @@ def _student(
     error: float,
     df: int,
     statistic: float,
-    effect_size: EffectSize,
+    sizes: tuple[EffectSize, EffectSize],
 ) -> TTest:
     """Student's test of a difference with its standard error.
 
@@ -115,7 +131,8 @@ def _student(
         statistic=statistic,
         df=float(df),
         p=2.0 * float(stats.t.sf(abs(statistic), df)),
-        effect_size=effect_size,
+        effect_size=sizes[0],
+        d_av=sizes[1],
     )
 
 

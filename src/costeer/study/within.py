@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from costeer.study.cells import Observations, participant_means
-from costeer.study.factorial import Design, compared_pairs
+from costeer.study.factorial import Design
 from costeer.study.mixed import mixed_f_tests
 from costeer.study.outcome import MIXED, WITHIN, EffectRow, PairRow
 from costeer.study.repeated import repeated_f_test
@@ -31,7 +31,7 @@ def within_effects(
     """
     means = participant_means(observed, participants, design.factor, design.cells)
     complete = np.isfinite(means).all(axis=1)
-    note = joined(design.note, _left_out(means, participants, design.cells))
+    note = joined(design.note, left_out(means, participants, design.cells))
     about = About(measure, WITHIN, int(complete.sum()), note)
     for effect in design.effects:
         yield effect_row(about, effect.name, repeated_f_test(means[complete], effect))
@@ -49,7 +49,7 @@ def within_pairs(
     measure: str,
     observed: Observations,
     factor: str,
-    names: Sequence[str],
+    pairs: Sequence[tuple[str, str]],
     participants: Sequence[str],
 ) -> tuple[PairRow, ...]:
     """Return paired t tests on participants' means, corrected over the pairs.
@@ -58,20 +58,20 @@ def within_pairs(
         measure: Name of the measure.
         observed: Its values.
         factor: `condition` or `strength`.
-        names: Levels of the factor that the study has.
+        pairs: Levels of the factor to compare, each first minus second.
         participants: Everyone who took part.
     """
     comparisons = []
-    for pair in compared_pairs(factor, names):
+    for pair in pairs:
         means = participant_means(observed, participants, factor, pair)
         both = np.isfinite(means).all(axis=1)
         test = paired_t_test(means[both, 0], means[both, 1])
-        num_pairs, note = int(both.sum()), _left_out(means, participants, pair)
+        num_pairs, note = int(both.sum()), left_out(means, participants, pair)
         comparisons.append(PairTest(*pair, test, num_pairs, num_pairs, note))
     return pair_rows(measure, WITHIN, comparisons)
 
 
-def _left_out(
+def left_out(
     means: NDArray[np.float64], participants: Sequence[str], cells: Sequence[str]
 ) -> str:
     """Name the participants who lack a cell, and which they lack."""

@@ -25,12 +25,14 @@ from costeer.intention.features import (
     feature_series,
     mirrored,
 )
+from costeer.records.adaptation import AS_IT_IS, Adaptation, adapted, cleaned
 from costeer.records.checks import check_time, text_told
 from costeer.records.contradictions import contradictions, unwrapped
 from costeer.records.names import empty_told, groups, names_of
-from costeer.records.plausible import suspicions
+from costeer.records.plausible import unit_doubts
 from costeer.records.record import TrialRecord, read_noted
-from costeer.records.times import likely_times, without_repeated
+from costeer.records.tables import AS_FOUND, Reading
+from costeer.records.times import no_time
 from costeer.training.labels import Labels, labels
 from costeer.training.tables import (
     Columns,
@@ -124,10 +126,7 @@ def runs(driver: str, name: str, columns: Columns) -> list[Recording]:
 
 def _notes(name: str, columns: Columns) -> tuple[str, ...]:
     """What should be known before a judgement is trusted."""
-    units = [
-        f"{name}: {each.words}; if so, multiply it by {each.factor:.6g}"
-        for each in suspicions(columns)
-    ]
+    units = (f"{name}: {each}" for each in unit_doubts(columns))
     return (*units, *remarks(name, columns))
 
 
@@ -210,16 +209,11 @@ def _check_names(name: str, columns: Columns) -> None:
     """Refuse a table without what every stretch needs."""
     missing = [column for column in _NEEDED if column not in columns]
     if "time" in missing:
-        near = likely_times(columns)
-        likely = f"it may be {' or '.join(near[:3])}; " if near else ""
-        raise ValueError(
-            f"{name} has no column time [s]; {likely}name it so in the file; there are "
-            f"{', '.join(columns)}"
-        )
+        raise ValueError(f"{name}: {no_time(columns)}")
     if missing:
         raise ValueError(
             f"{name} has no column {', '.join(missing)}; names are those of the trial "
-            "record"
+            "record (on the command line: --rename YOURS=NAME)"
         )
     named = ("crossing", "lane", "adjacent_side", *FEATURES)
     for column in (*_NEEDED, *(n for n in named if n in columns)):
@@ -251,6 +245,7 @@ def recordings_of(
     name: str,
     resample: bool = False,
     told: Sequence[str] = (),
+    adaptation: Adaptation = AS_IT_IS,
 ) -> list[Recording]:
     """The stretches of a trial record or of a table.
 
@@ -260,36 +255,50 @@ def recordings_of(
         resample: Bring a table of another rate to 60 Hz; a row that repeats the time
             of the row before is left out.
         told: Notes on how the file was read.
+        adaptation: Names, units and stretches of a foreign table.
 
     Returns:
         Notes on the whole table stand with the first.
 
     Raises:
-        ValueError: As `runs` does.
+        ValueError: As `runs` does, or if the adaptation does not fit the table.
     """
-    columns, before = record.columns, [f"{name}: {each}" for each in told]
+    columns, renamed = adapted(record.columns, adaptation)
+    before = [f"{name}: {each}" for each in (*told, *renamed)]
     if record.metadata:
         driver = f"{record.metadata['seed']}-{record.metadata['participant']}"
+        columns, dropped = cleaned(columns, adaptation)
+        before += [f"{name}: {each}" for each in dropped]
         return _with_notes(runs(driver, name, columns), before)
     _check_names(name, columns)
-    parts = _stretches(name, columns)
     for key in (key for key in _KEYS if key in columns):
         before += [f"{name}: {each}" for each in empty_told(key, columns[key])]
-    if resample:
-        cleaned = [(label, *without_repeated(part)) for label, part in parts]
-        before += [f"{label}: {each}" for label, _, notes in cleaned for each in notes]
-        for label, part, _ in cleaned:
-            before += uneven_told(label, part)
-        parts = [(label, resampled(label, part)) for label, part, _ in cleaned]
-    found = [
-        one for label, part in parts for one in runs(_driver(part, label), label, part)
-    ]
+    found: list[Recording] = []
+    wanted = adaptation._replace(drop_repeated=resample or adaptation.drop_repeated)
+    for label, part in _stretches(name, columns):
+        ready, notes = _ready(label, cleaned(part, wanted), resample)
+        before += notes
+        found += runs(_driver(ready, label), label, ready)
     columns, wrapped = unwrapped(columns)
     before += [f"{name}: {each}" for each in wrapped]
-    for label, part in parts:
-        before += _contradicting(label, unwrapped(part)[0])
-    notes = (*before, *_notes(name, columns), *_too_short(name, found))
-    return [r._replace(notes=() if i else notes) for i, r in enumerate(found)]
+    notes = [*before, *_notes(name, columns), *_too_short(name, found)]
+    return [r._replace(notes=() if i else tuple(notes)) for i, r in enumerate(found)]
+
+
+def _ready(
+    label: str, part: tuple[dict[str, NDArray[Any]], list[str]], resample: bool
+) -> tuple[dict[str, NDArray[Any]], list[str]]:
+    """A stretch at 60 Hz if wanted, and what its rows, as they were, say.
+
+    What contradicts is looked for before: the 60 Hz rows lack all but the signals.
+    """
+    columns, told = part
+    notes = [f"{label}: {each}" for each in told]
+    notes += _contradicting(label, unwrapped(columns)[0])
+    if not resample:
+        return columns, notes
+    even = resampled(label, with_distance(columns))
+    return even, [*notes, *uneven_told(label, columns)]
 
 
 def _with_notes(found: list[Recording], notes: Sequence[str]) -> list[Recording]:
@@ -341,12 +350,19 @@ def _driver(columns: Columns, otherwise: str) -> str:
     return otherwise
 
 
-def read_recordings(paths: Sequence[Path], resample: bool = False) -> list[Recording]:
-    """Read trial records or tables (CSV, Parquet).
+def read_recordings(
+    paths: Sequence[Path],
+    resample: bool = False,
+    adaptation: Adaptation = AS_IT_IS,
+    reading: Reading = AS_FOUND,
+) -> list[Recording]:
+    """Read trial records or tables, told by their content.
 
     Args:
         paths: The files.
         resample: Bring tables of another rate to 60 Hz.
+        adaptation: Names, units and stretches of foreign tables.
+        reading: How to read a text.
 
     Raises:
         ValueError: If a file cannot be understood or lacks columns, naming it.
@@ -354,6 +370,10 @@ def read_recordings(paths: Sequence[Path], resample: bool = False) -> list[Recor
     """
     found = []
     for path in paths:
-        record, told = read_noted(path)
-        found += recordings_of(record, str(path), resample, told)
+        record, told = read_noted(path, reading)
+        try:
+            found += recordings_of(record, str(path), resample, told, adaptation)
+        except ValueError as error:
+            why = str(error) if str(path) in str(error) else f"{path}: {error}"
+            raise ValueError("; ".join([why, *told])) from error
     return found

@@ -22,14 +22,12 @@ from costeer.intention.features import (
     WINDOW_LENGTH,
     adjacent_side,
 )
+from costeer.records.adaptation import EXTRA_NAMES
 from costeer.records.columns import COLUMN_NAMES
 from costeer.training.labels import crossings
 from costeer.training.resample import EVEN, delayed, grid, held, sample_at
 
 Columns = Mapping[str, NDArray[Any]]  # Any: floats, lanes or labels
-
-EXTRA_NAMES = ("sequence", "participant", "crossing", "adjacent_side")
-"""Columns of a table that a trial record does not have."""
 
 _DISTANCE = "distance_to_adjacent_lane"
 _LARGEST_STEP = 0.5  # of the distance between two rows [m]; a crossing jumps farther

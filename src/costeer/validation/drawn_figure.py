@@ -29,6 +29,7 @@ from costeer.pages.style import (
     styled,
     svg_text,
 )
+from costeer.pages.units import shown
 from costeer.validation.drawn import UNITS, drawn_correlations
 from costeer.validation.look import OURS, no_counts, num_bins
 
@@ -124,7 +125,8 @@ def _histograms(
     )
     axes = [a for row in panels(figure, rows, _COLUMNS, margins) for a in row]
     for axis, (name, unit) in zip(axes, UNITS.items(), strict=False):
-        values = np.array([driver[name] for driver in population.drivers])
+        unit, factor = shown(unit)
+        values = factor * np.array([driver[name] for driver in population.drivers])
         _histogram(axis, values)
         axis.set_title(spoken(name).replace(".", ": "), size=SMALL, pad=2.0)
         axis.set_xlabel(f"[{unit}]" if unit != "-" else "[–]", size=SMALL, labelpad=1.0)

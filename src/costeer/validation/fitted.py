@@ -111,8 +111,8 @@ def same_trial(
     speed = float(np.mean(columns["longitudinal_velocity"]))
     if not SLOWEST <= speed <= FASTEST:
         raise ValueError(
-            f"the recording's mean speed is {speed:.3g} m/s; a check by simulation "
-            f"needs {SLOWEST:g} to {FASTEST:g} m/s"
+            f"the recording's mean speed is {speed * 3.6:.3g} km/h; a check by "
+            f"simulation needs {SLOWEST * 3.6:.4g} to {FASTEST * 3.6:.4g} km/h"
         )
     driven, column = vehicle_of(record, car)
     return TrialSetup(

@@ -22,6 +22,7 @@ from costeer.pages.style import (
     styled,
     svg_text,
 )
+from costeer.pages.units import shown
 from costeer.validation.look import HUMAN, OURS, no_counts
 
 POPULATION_SEED = 1
@@ -46,10 +47,11 @@ def fit_svg(fit: DriverFit, suggested_speed: float) -> str:
 
 def description(fit: DriverFit) -> str:
     """Text for those who do not see the figure."""
+    estimates = map(_as_shown, fit.estimates)
     return (
         f"{len(fit.estimates)} estimates of a fitted driver with their 95 % intervals, "
         f"each on the histogram of {NUM_DRIVERS} virtual drivers: "
-        + ", ".join(f"{e.name} {e.value:.3g} {e.unit}" for e in fit.estimates)
+        + ", ".join(f"{e.name} {e.value:.3g} {e.unit}" for e in estimates)
         + "."
     )
 
@@ -88,10 +90,22 @@ def draw_fit(fit: DriverFit, suggested_speed: float) -> Figure:
     ]
     for axis, estimate in zip(axes, fit.estimates, strict=False):
         values = np.array([value_of(driver, estimate.name) for driver in drivers])
-        _panel(axis, estimate, values)
+        factor = shown(estimate.unit).factor
+        _panel(axis, _as_shown(estimate), factor * values)
     for axis in axes[len(fit.estimates) :]:
         axis.set_visible(False)
     return figure
+
+
+def _as_shown(estimate: Estimate) -> Estimate:
+    """The estimate in people's units."""
+    unit, factor = shown(estimate.unit)
+    return estimate._replace(
+        unit=unit,
+        value=factor * estimate.value,
+        low=factor * estimate.low,
+        high=factor * estimate.high,
+    )
 
 
 def _panel(axes: Axes, estimate: Estimate, values: NDArray[np.float64]) -> None:

@@ -50,9 +50,10 @@ def test_a_missing_package_is_named_with_its_extra(
     monkeypatch.setitem(sys.modules, module, None)
     kind = {"sdl2": "sdl", "hid": "hid", "can": "senso"}[module]
     description = WheelDescription(kind, "a:b", "A wheel", "046d-c24f-hid")
-    with pytest.raises(ModuleNotFoundError, match=f"{words}.*pip install 'costeer"):
+    told = rf"{words}.*pip install .*\[(drive|can)\]"
+    with pytest.raises(ModuleNotFoundError, match=told):
         prepare_stop(description)
-    with pytest.raises(ModuleNotFoundError, match=f"{words}.*pip install 'costeer"):
+    with pytest.raises(ModuleNotFoundError, match=told):
         emergency_stop(description)
 
 
@@ -67,7 +68,7 @@ def test_without_any_backend_the_extra_is_named(
 ) -> None:
     monkeypatch.setitem(sys.modules, "sdl2", None)
     monkeypatch.setitem(sys.modules, "hid", None)
-    with pytest.raises(ModuleNotFoundError, match=r"'costeer\[drive\]'") as error:
+    with pytest.raises(ModuleNotFoundError, match=r"\[drive\]'") as error:
         found_wheels()
     assert error.value.name == "sdl2"
 
@@ -76,7 +77,7 @@ def test_the_ctypes_package_of_the_same_name_is_told(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setitem(sys.modules, "hid", sys)  # any module without `device`
-    with pytest.raises(ModuleNotFoundError, match="run: pip uninstall hid"):
+    with pytest.raises(ModuleNotFoundError, match=r"pip uninstall.* hid, then: "):
         hid.hid_library()
 
 

@@ -69,7 +69,9 @@ def page(browser: Browser) -> Iterator[Page]:
 Json = dict[str, Any]  # Any: as JSON has it
 
 
-def show(page: Page, name: str, language: str = "en", seed: int = 1, **texts: Any) -> Json:
+def show(
+    page: Page, name: str, language: str = "en", seed: int = 1, **texts: Any
+) -> Json:
     """Show an instrument of costeer; return what the page was given.
 
     Args:

@@ -11,6 +11,7 @@ import math
 import time
 from typing import Any
 
+from costeer.base.extras import install_command, pip_command
 from costeer.devices.wheels import logitech
 from costeer.devices.wheels.calibration import (
     WheelCalibration,
@@ -86,13 +87,14 @@ def hid_library() -> Any:  # Any: hidapi ships no types
         import hid
     except ImportError as error:
         raise ModuleNotFoundError(
-            "hidapi is not installed; install it with: pip install 'costeer[drive]'",
+            f"hidapi is not installed; install it with: {install_command('drive')}",
             name="hid",
         ) from error
     if not hasattr(hid, "device"):
         raise ModuleNotFoundError(
             "the package hid hides hidapi, which has the same module name; "
-            "run: pip uninstall hid, then: pip install --force-reinstall hidapi"
+            f"run: {pip_command('uninstall')} hid, then: "
+            f"{pip_command('install')} --force-reinstall hidapi"
         )
     return hid
 

@@ -7,6 +7,7 @@ import time
 from contextlib import suppress
 from functools import cache
 
+from costeer.base.extras import install_command
 from costeer.base.plugins import advertised, load_object
 from costeer.devices.wheels import hid, sdl, senso, simulated
 from costeer.devices.wheels.calibration import WheelCalibration
@@ -15,7 +16,7 @@ from costeer.devices.wheels.sdl_session import stay_ready
 
 _INSTALL = (
     "pysdl2 and hidapi are not installed; install them with: "
-    "pip install 'costeer[drive]'"
+    f"{install_command('drive')}"
 )
 
 ENTRY_POINTS = "costeer.wheels"

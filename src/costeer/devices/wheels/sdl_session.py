@@ -9,6 +9,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any
 
+from costeer.base.extras import install_command
 from costeer.devices.wheels.interface import EFFECT_LIFE, WheelDescription, WheelLost
 
 _HINTS = {
@@ -35,7 +36,7 @@ def sdl_library() -> Any:  # Any: sdl2 ships no types
     except ImportError as error:
         raise ModuleNotFoundError(
             "pysdl2 or its library is not installed; install it with: "
-            "pip install 'costeer[drive]'",
+            f"{install_command('drive')}",
             name="sdl2",
         ) from error
     hints = dict(_HINTS)

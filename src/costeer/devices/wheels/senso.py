@@ -13,6 +13,7 @@ import time
 from types import ModuleType
 from typing import TYPE_CHECKING
 
+from costeer.base.extras import install_command
 from costeer.devices.wheels.calibration import (
     WheelCalibration,
     device_command,
@@ -83,7 +84,7 @@ def can_library() -> ModuleType:
         import can
     except ImportError as error:
         raise ModuleNotFoundError(
-            "python-can is not installed; install it with: pip install 'costeer[can]'",
+            f"python-can is not installed; install it with: {install_command('can')}",
             name="can",
         ) from error
     return can

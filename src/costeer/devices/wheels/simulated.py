@@ -9,7 +9,7 @@ from __future__ import annotations
 import json
 import math
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple
 
 from costeer.devices.wheels.calibration import (
@@ -18,6 +18,7 @@ from costeer.devices.wheels.calibration import (
     device_torque,
     largest_torque,
 )
+from costeer.devices.wheels.hands import KINDS, Seen
 from costeer.devices.wheels.interface import (
     EFFECT_LIFE,
     WheelDescription,
@@ -123,7 +124,7 @@ def true_calibration(
 
 def simulated_description(
     identity: str = "simulated",
-    hands: SpringHands | None = None,
+    hands: SpringHands | Mapping[str, Any] | None = None,
     torque_cell: str = "",
     **options: Any,  # Any: fields of SimulatedWheelParameters, each of its own type
 ) -> WheelDescription:
@@ -131,7 +132,8 @@ def simulated_description(
 
     Args:
         identity: Key of its calibration.
-        hands: Who holds it; nobody if None.
+        hands: Who holds it; nobody if None. A mapping names moving hands: `kind` is one
+            of `hands.KINDS`, the rest is theirs.
         torque_cell: Name of the shared memory that shows its torque; see `TorqueCell`.
         **options: Fields of `SimulatedWheelParameters` that differ.
 
@@ -141,12 +143,41 @@ def simulated_description(
     SimulatedWheelParameters(**_known(options))
     content: dict[str, Any] = dict(options)  # Any: what JSON holds
     if hands is not None:
-        content["hands"] = hands._asdict()
+        content["hands"] = (
+            hands._asdict() if isinstance(hands, SpringHands) else dict(hands)
+        )
     if torque_cell:
         content["torque_cell"] = torque_cell
     return WheelDescription(
         "simulated", json.dumps(content), "simulated wheel", identity
     )
+
+
+def held_by(description: WheelDescription | None) -> str:
+    """Word of the moving hands on a simulated wheel; empty for any other."""
+    if description is None or description.kind != "simulated":
+        return ""
+    hands = _content(description).get("hands") or {}
+    return str(hands.get("kind", ""))
+
+
+def in_hands_of(
+    description: WheelDescription | None, participant: int, trial: str, speed: float
+) -> WheelDescription | None:
+    """A simulated wheel in the hands of a virtual driver; any other as it is.
+
+    Args:
+        description: Of the wheel.
+        participant: Number of the driver.
+        trial: Picks the driver's noise.
+        speed: That is suggested [m/s].
+    """
+    if description is None or held_by(description) != "virtual":
+        return description
+    content = _content(description)
+    driven = {"participant": participant, "trial": trial, "speed": speed}
+    content["hands"] = {**content["hands"], **driven}
+    return description._replace(address=json.dumps(content))
 
 
 def open_simulated(
@@ -165,19 +196,35 @@ def open_simulated(
         ValueError: If the description is none of a simulated wheel.
     """
     content = _content(description)
-    held_by = content.pop("hands", None)
+    hands = content.pop("hands", None)
     cell = content.pop("torque_cell", "")
     if "torque_curve" in content:
         content["torque_curve"] = tuple(tuple(p) for p in content["torque_curve"])
-    # Its method, since a named tuple is no `Callable` to mypy.
-    hands = no_hands if held_by is None else SpringHands(**held_by).__call__
+    parameters = SimulatedWheelParameters(**_known(content))
     return SimulatedWheel(
-        SimulatedWheelParameters(**_known(content)),
+        parameters,
         calibration,
-        hands,
+        _hands(hands, parameters.dt),
         torque_cell=TorqueCell(cell) if cell else None,
         clock=clock,
     )
+
+
+def _hands(said: dict[str, Any] | None, dt: float) -> Hands:
+    """Who holds the wheel.
+
+    Raises:
+        ValueError: If there are no such hands.
+    """
+    if said is None:
+        return no_hands
+    if "kind" not in said:
+        return SpringHands(**said).__call__  # a named tuple is no `Callable` to mypy
+    if said["kind"] not in KINDS:
+        raise ValueError(
+            f"hands of kind {said['kind']!r} are not known; {', '.join(KINDS)} are"
+        )
+    return KINDS[said["kind"]](said, dt)
 
 
 def stop_simulated(description: WheelDescription) -> None:
@@ -254,6 +301,12 @@ class SimulatedWheel:
         self._check_plugged()
         return (self._axis(),)
 
+    def see(self, seen: Seen) -> None:
+        """Let hands that move look at the drive, once in a control step."""
+        look = getattr(self._hands, "see", None)
+        if look is not None:
+            look(seen)
+
     def write(self, torque: float) -> None:
         """See `Wheel.write`."""
         self._check_plugged()
@@ -305,6 +358,10 @@ class SimulatedWheel:
     def _reading(self, held: float) -> WheelReading:
         parameters, known = self._parameters, self._calibration
         seen = parameters.angle_sign * known.angle_sign
+        pressed = getattr(self._hands, "pedals", None)
+        accelerator, brake = pressed() if pressed else (math.nan, math.nan)
+        if math.isnan(accelerator):
+            accelerator, brake = parameters.accelerator, parameters.brake
         return WheelReading(
             time=self.time if self._clock is None else self._clock(),
             steering_wheel_angle=self._axis() * known.angle_sign * known.full_range / 2,
@@ -312,8 +369,8 @@ class SimulatedWheel:
             if parameters.measures_rate
             else math.nan,
             driver_torque=held if parameters.measures_torque else math.nan,
-            accelerator=parameters.accelerator,
-            brake=parameters.brake,
+            accelerator=accelerator,
+            brake=brake,
             buttons=0,
         )
 

@@ -6,6 +6,7 @@ import itertools
 import math
 import re
 from collections.abc import Mapping, Sequence
+from functools import lru_cache
 from importlib.resources import files
 from pathlib import Path
 from typing import Any, Literal, NamedTuple, get_args
@@ -162,6 +163,12 @@ def read_mapping(path: Path) -> dict[str, Any]:  # Any: as YAML gives it back
         ValueError: If it is no YAML, or not `name: value` lines.
         OSError: If it cannot be read.
     """
+    return dict(_read_mapping(path, path.stat().st_mtime_ns))
+
+
+@lru_cache(maxsize=64)  # pages ask for the words twice a second
+def _read_mapping(path: Path, changed: int) -> dict[str, Any]:
+    """As `read_mapping`, of a file that was changed at that time [ns]."""
     content = read_whole(path, _LARGEST_FILE)
     try:
         said = yaml.load(content, _LOADER)
@@ -204,10 +211,11 @@ def _items(entry: object) -> list[Item]:
     """The items of one entry: one, or one for each pair that is compared."""
     if not isinstance(entry, dict) or not _NAME.fullmatch(str(entry.get("name", ""))):
         raise ValueError(f"item {entry!r}: give name, of small letters, and kind")
-    name, kind = str(entry["name"]), entry.get("kind")
+    name, said = str(entry["name"]), entry.get("kind")
     where = f"item {name!r}"
-    if kind not in get_args(Kind):
-        raise ValueError(f"{where}: kind is {kind!r}; give {', '.join(get_args(Kind))}")
+    kind: Kind | None = next((known for known in get_args(Kind) if known == said), None)
+    if kind is None:
+        raise ValueError(f"{where}: kind is {said!r}; give {', '.join(get_args(Kind))}")
     _refuse_unknown(where, entry, {"name", "kind", "required"} | _ITEM_FIELDS[kind])
     required = _flag(where, entry, "required", True)
     if kind == "pairs":

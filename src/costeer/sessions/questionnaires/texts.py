@@ -92,8 +92,9 @@ def merged(under: Words, over: Words) -> dict[str, Any]:  # Any: nested texts
     both = dict(under)
     for key, value in over.items():
         below = both.get(key)
-        nested = isinstance(value, dict) and isinstance(below, dict)
-        both[key] = merged(below, value) if nested else value
+        if isinstance(value, dict) and isinstance(below, dict):
+            value = merged(below, value)
+        both[key] = value
     return both
 
 

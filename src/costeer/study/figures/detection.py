@@ -90,7 +90,7 @@ def _cumulative(axes: Axes, leads: dict[str, NDArray[np.float64]]) -> None:
             label = f"{strength} (n = {values.size})"
             line = STRENGTH_LINES[strength]
             axes.plot(lead, share, color=colour, linestyle=line, label=label)
-    axes.axvline(_HORIZON, color=FAINT, linewidth=0.7, linestyle=(0, (1.0, 1.5)))
+    axes.axvline(_HORIZON, color=FAINT, linewidth=0.7)
     axes.set_xlim(0.0, _LONGEST_LEAD)
     axes.set_ylim(0.0, 102.0)
     axes.set_xlabel("Time before the crossing [s]")
@@ -183,7 +183,7 @@ def _caption(material: StudyMaterial) -> str:
     return (
         "(a) Share of the lane changes that the driver intended and that were "
         "announced at least so long before the crossing; missed ones count in the "
-        "share. Dotted: the 3 s that the network is asked for. (b) False triggers and "
+        "share. Grey: the 3 s that the network is asked for. (b) False triggers and "
         "(c) missed lane changes per kilometre: means over participants"
         f"{interval}. Under assistance triggers are judged against the driver's own "
         f"intention, not against crossings that the guidance made.{why}"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import pandas as pd
@@ -15,6 +15,7 @@ from costeer.pages.exhibit import Exhibit, not_drawn
 from costeer.pages.style import (
     FAINT,
     FULL_WIDTH_MM,
+    NORMAL,
     STRENGTH_COLOURS,
     STRENGTH_LINES,
     Margins,
@@ -39,6 +40,18 @@ Key = tuple[str, int]
 """Condition and direction."""
 
 
+class Own(NamedTuple):
+    """Trajectories of one condition and direction by participant.
+
+    Attributes:
+        positions: Own mean of each [m], shape `(time,)`.
+        changes: Lane changes of each.
+    """
+
+    positions: dict[int, NDArray[np.float64]]
+    changes: dict[int, int]
+
+
 class Mean(NamedTuple):
     """Mean trajectory of a condition and direction.
 
@@ -56,33 +69,54 @@ class Mean(NamedTuple):
 
 
 def draw(material: StudyMaterial) -> Exhibit:
-    """Draw the means of each duration and direction: manual, strong and weak."""
-    means = mean_trajectories(material)
-    if not means:
+    """Draw the means of each duration and direction, and what they differ by."""
+    own = own_trajectories(material)
+    if not own:
         return not_drawn(NAME, TITLE, "No trial of this study holds a lane change.")
+    means = {key: _mean(each) for key, each in own.items()}
+    apart = differences(own)
     durations = [name for name in DURATIONS if _has(means, name)] or [""]
-    figure = new_figure(FULL_WIDTH_MM, 108.0)
+    heights = [1.0, 0.8, 1.0, 0.8] if apart else [1.0, 1.0]
+    figure = new_figure(FULL_WIDTH_MM, 168.0 if apart else 108.0)
     margins = Margins(
-        left=16.0, top=11.0, bottom=10.0, between_columns=5.0, between_rows=9.0
+        left=16.0, top=12.0, bottom=10.0, between_columns=5.0, between_rows=9.0
     )
-    grid = panels(figure, 2, len(durations), margins)
-    for row, direction, letter in zip(grid, (RIGHT, LEFT), "ab", strict=True):
-        for axes, duration in zip(row, durations, strict=True):
-            _draw_panel(axes, means, duration, direction)
-            axes.tick_params(labelleft=axes is row[0], labelbottom=row is grid[1])
-        row[0].set_ylabel("Lateral position [m]")
-        panel_letter(row[0], letter)
-    for axes in grid[1]:
-        axes.set_xlabel("Time from crossing [s]")
+    grid = panels(figure, len(heights), len(durations), margins, row_heights=heights)
+    for at, direction in enumerate((RIGHT, LEFT)):
+        rows = grid[2 * at : 2 * at + 2] if apart else grid[at : at + 1]
+        for column, duration in enumerate(durations):
+            _draw_panel(rows[0][column], means, duration, direction)
+            if apart:
+                _draw_difference(rows[1][column], apart, duration, direction)
+        rows[0][0].set_ylabel("Lateral position [m]")
+        rows[-1][0].set_ylabel(rows[-1][0].get_ylabel() or "Minus manual [m]")
+    _label(grid)
     handles = _legend(means)
-    figure.legend(handles=handles, ncols=len(handles), loc="upper right")
-    return Exhibit(NAME, TITLE, _caption(means), _DESCRIPTION, figure)
+    figure.legend(
+        handles=handles,
+        ncols=len(handles),
+        loc="upper right",
+        fontsize=NORMAL,
+        handlelength=2.8,
+    )
+    return Exhibit(NAME, TITLE, _caption(own, means), _DESCRIPTION, figure)
+
+
+def _label(grid: list[list[Axes]]) -> None:
+    """Numbers at the outer panels only, and a letter for each row."""
+    for row, letter in zip(grid, "abcd", strict=False):
+        for axes in row:
+            axes.tick_params(labelleft=axes is row[0], labelbottom=row is grid[-1])
+        panel_letter(row[0], letter)
+    for axes in grid[-1]:
+        axes.set_xlabel("Time from crossing [s]")
 
 
 _DESCRIPTION = (
-    "Six panels of lateral position against time from the crossing: lane changes to "
-    "the right above, to the left below, one column for each planned duration, each "
-    "with the mean curves of manual, strong and weak and their bands."
+    "Lateral position against time from the crossing: lane changes to the right above, "
+    "to the left below, one column for each planned duration, each with the mean "
+    "curves of manual, strong and weak and their bands; below them strong and weak "
+    "less manual."
 )
 
 
@@ -91,10 +125,9 @@ def _has(means: dict[Key, Mean], duration: str) -> bool:
     return any(key[0] in names for key in means)
 
 
-def mean_trajectories(material: StudyMaterial) -> dict[Key, Mean]:
-    """Return the mean trajectory of every condition and direction there is."""
-    own: dict[Key, list[NDArray[np.float64]]] = {}
-    counts: dict[Key, int] = {}
+def own_trajectories(material: StudyMaterial) -> dict[Key, Own]:
+    """Return each participant's mean in every condition and direction there is."""
+    own: dict[Key, Own] = {}
     changes = material.lane_changes.groupby(["participant", "condition"])
     for (participant, name), rows in changes:
         path = material.records.get((int(participant), str(name)))
@@ -103,11 +136,33 @@ def mean_trajectories(material: StudyMaterial) -> dict[Key, Mean]:
         record = read_record(path, ["time", "lateral_position"])
         time, position = record.columns["time"], record.columns["lateral_position"]
         for direction, crossings in rows.groupby("direction")["crossing_time"]:
-            key = (str(name), int(direction))
             aligned = _aligned(time, position, crossings)
-            counts[key] = counts.get(key, 0) + len(aligned)
-            own.setdefault(key, []).append(_column_means(aligned))
-    return {key: _mean(np.array(values), counts[key]) for key, values in own.items()}
+            known = own.setdefault((str(name), int(direction)), Own({}, {}))
+            known.positions[int(participant)] = _column_means(aligned)
+            known.changes[int(participant)] = len(aligned)
+    return own
+
+
+def mean_trajectories(material: StudyMaterial) -> dict[Key, Mean]:
+    """Return the mean trajectory of every condition and direction there is."""
+    return {key: _mean(own) for key, own in own_trajectories(material).items()}
+
+
+def differences(own: dict[Key, Own]) -> dict[Key, Mean]:
+    """Mean of what each participant's trajectory has more than the own manual one."""
+    found = {}
+    for (name, direction), each in own.items():
+        manual = own.get((MANUAL, direction))
+        if name == MANUAL or manual is None:
+            continue
+        apart = {
+            who: position - manual.positions[who]
+            for who, position in each.positions.items()
+            if who in manual.positions
+        }
+        if apart:
+            found[name, direction] = _mean(each._replace(positions=apart))
+    return found
 
 
 def _aligned(
@@ -122,13 +177,14 @@ def _aligned(
     )
 
 
-def _mean(own: NDArray[np.float64], changes: int) -> Mean:
-    """Mean over participants, shape of `own` `(participants, time)`."""
+def _mean(own: Own) -> Mean:
+    """Mean over participants of their own means."""
+    positions = np.array(list(own.positions.values()))
     return Mean(
-        position=_column_means(own),
-        half_width=np.array([half_width(column) for column in own.T]),
-        participants=len(own),
-        changes=changes,
+        position=_column_means(positions),
+        half_width=np.array([half_width(column) for column in positions.T]),
+        participants=len(positions),
+        changes=sum(own.changes[who] for who in own.positions),
     )
 
 
@@ -145,25 +201,53 @@ def _column_means(rows: NDArray[np.float64]) -> NDArray[np.float64]:
 def _draw_panel(
     axes: Axes, means: dict[Key, Mean], duration: str, direction: int
 ) -> None:
+    _draw_means(axes, means, duration, direction)
+    axes.axhline(LANE_LINE, color=FAINT, linewidth=0.7, linestyle=(0, (6.0, 4.0)))
+    axes.set_ylim(-4.3, 0.8)
+    axes.set_yticks(LANE_TICKS)
+    planned = f"{duration} ({DURATIONS[duration]:g} s), " if duration else ""
+    axes.set_title(f"{planned}to the {_WORDS[direction]}")
+
+
+def _draw_difference(
+    axes: Axes, apart: dict[Key, Mean], duration: str, direction: int
+) -> None:
+    _draw_means(axes, apart, duration, direction)
+    axes.axhline(0.0, color=STRENGTH_COLOURS["manual"], **_MANUAL_LINE)
+    limit = _limit(apart)
+    axes.set_ylim(-limit, limit)
+
+
+_MANUAL_LINE: Any = {"linewidth": 1.1, "linestyle": STRENGTH_LINES["manual"]}
+_WIDEST_BAND = 2.0  # of the largest difference; that of two participants is no scale
+
+
+def _limit(apart: dict[Key, Mean]) -> float:
+    """Half of the range of the differences, one for all panels [m]."""
+    largest = max(float(np.nanmax(np.abs(each.position))) for each in apart.values())
+    reached = max(
+        float(np.nanmax(np.abs(each.position) + np.nan_to_num(each.half_width)))
+        for each in apart.values()
+    )
+    return 1.05 * min(reached, _WIDEST_BAND * largest) or 1.0
+
+
+def _draw_means(
+    axes: Axes, means: dict[Key, Mean], duration: str, direction: int
+) -> None:
+    """Lines and bands of the conditions of one duration, and manual."""
     for chosen in CONDITIONS:
         mean = means.get((chosen.name, direction))
         if mean is None or chosen.duration not in ("", duration):
             continue
-        colour, line = (
-            STRENGTH_COLOURS[chosen.strength],
-            STRENGTH_LINES[chosen.strength],
-        )
+        colour = STRENGTH_COLOURS[chosen.strength]
+        line = STRENGTH_LINES[chosen.strength]
         low, high = mean.position - mean.half_width, mean.position + mean.half_width
         axes.fill_between(TIME, low, high, color=colour, alpha=0.22, linewidth=0)
         axes.plot(TIME, mean.position, color=colour, linestyle=line, linewidth=1.1)
-    axes.axhline(LANE_LINE, color=FAINT, linewidth=0.7, linestyle=(0, (6.0, 4.0)))
     axes.axvline(0.0, color=FAINT, linewidth=0.5, zorder=0)
     axes.set_xlim(TIME[0], TIME[-1])
-    axes.set_ylim(-4.3, 0.8)
-    axes.set_yticks(LANE_TICKS)
     axes.set_xticks([-4, -2, 0, 2, 4, 6])
-    planned = f"{duration} ({DURATIONS[duration]:g} s), " if duration else ""
-    axes.set_title(f"{planned}to the {_WORDS[direction]}")
 
 
 def _legend(means: dict[Key, Mean]) -> list[Line2D]:
@@ -175,24 +259,27 @@ def _legend(means: dict[Key, Mean]) -> list[Line2D]:
     ]
 
 
-def _caption(means: dict[Key, Mean]) -> str:
+def _caption(own: dict[Key, Own], means: dict[Key, Mean]) -> str:
     changes = sum(mean.changes for mean in means.values())
-    participants = max(mean.participants for mean in means.values())
+    participants = len({who for each in own.values() for who in each.positions})
     band = (
         "bands are 95 % intervals of that mean"
         if participants > 1
         else "one participant only, hence no band"
     )
-    manual = (
-        " The manual mean is the same in each row."
-        if any(name == MANUAL for name, _ in means)
+    apart = any(name == MANUAL for name, _ in means) and len({n for n, _ in means}) > 1
+    letters = ("a", "c") if apart else ("a", "b")
+    differing = (
+        " (b, d) The same less the participant's own manual mean, which is the dotted "
+        "zero: above it the car is farther to the left. The manual mean is the same "
+        "in each column."
+        if apart
         else ""
     )
     return (
         f"{changes} lane changes of {participants} participants, aligned at the "
-        "crossing of the lane line (dashed): (a) to the right, (b) to the left. Lines "
-        "are "
-        f"means over participants of each one's own mean; {band}.{manual} Lateral "
-        "position is measured from the left lane's centre; the right lane's is at "
-        "−3.5 m."
+        f"crossing of the lane line (dashed): ({letters[0]}) to the right, "
+        f"({letters[1]}) to the left. Lines are means over participants of each one's "
+        f"own mean; {band}. Lateral position is measured from the left lane's centre; "
+        f"the right lane's is at −3.5 m.{differing}"
     )

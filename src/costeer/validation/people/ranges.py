@@ -149,7 +149,7 @@ _CHANGES = (
 _GLANCES = (
     Quantity(
         "R7",
-        "lane changes out with a glance (0.30 rad) to that side",
+        "lane changes out with a glance (17 deg) to that side",
         "%",
         _HEADS,
         _only(84.0),
@@ -160,7 +160,7 @@ _GLANCES = (
     ),
     Quantity(
         "R8",
-        "lane changes back with a glance (0.25 rad) to that side",
+        "lane changes back with a glance (14 deg) to that side",
         "%",
         _HEADS,
         _only(83.0),
@@ -204,7 +204,7 @@ _GLANCES = (
     ),
     Quantity(
         "R12",
-        "lane changes out with a look over the shoulder (0.6 rad)",
+        "lane changes out with a look over the shoulder (34 deg)",
         "%",
         _HEADS,
         _UNKNOWN,
@@ -215,7 +215,7 @@ _GLANCES = (
     ),
     Quantity(
         "R13",
-        "lane changes back with a look over the shoulder (0.6 rad)",
+        "lane changes back with a look over the shoulder (34 deg)",
         "%",
         _HEADS,
         _UNKNOWN,

@@ -26,7 +26,7 @@ _UNITS = {target.name: target.unit for target in TARGETS}
 _SHOWN = tuple(n for n, measure in MEASURES.items() if measure.statistic != DEVIATION)
 _COLUMNS = 5
 _MARGINS = Margins(
-    left=10.0, right=2.0, top=9.0, bottom=10.0, between_columns=9.5, between_rows=19.0
+    left=13.0, right=3.0, top=9.0, bottom=10.0, between_columns=9.5, between_rows=19.0
 )
 
 
@@ -52,7 +52,7 @@ def draw_twice(
         )
         axes.set_xlabel(f"first [{_UNITS[name]}]", size=SMALL, labelpad=1.5)
     for row in grid:
-        row[0].set_ylabel("second trial, same unit", size=SMALL)
+        row[0].set_ylabel("second, same unit", size=SMALL, labelpad=1.5)
     return Exhibit(
         name=NAME,
         title="Every driver twice",
@@ -77,4 +77,4 @@ def _twice(axes: Axes, first: Values, second: Values) -> None:
     axes.set_xlim(*ends)
     axes.set_ylim(*ends)
     axes.set_aspect("equal")
-    axes.locator_params(nbins=4)
+    axes.locator_params(nbins=3)

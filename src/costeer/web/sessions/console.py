@@ -170,6 +170,10 @@ class Console:
             raise ValueError("nobody drives in this step")
         self._desk.drive.ask(*map(str, command))
 
+    def retry(self) -> None:
+        """Try again what could not be done."""
+        self._desk.trouble = ""
+
     def stop(self) -> None:
         """End the attempt; it is kept as aborted and driven again."""
         if self._desk.drive is None:
@@ -217,8 +221,7 @@ class Console:
         self._session.withdraw(who)
 
     def check(self) -> None:
-        """Look at the devices; a drive that could not begin is tried again."""
-        self._desk.trouble = ""
+        """Look at the devices."""
         self._desk.checked = [
             {"name": name, "well": well, "told": told, "utc": now().utc}
             for name, well, told in self._desk.devices.checks()
@@ -234,6 +237,7 @@ class Console:
 ACTIONS: dict[str, tuple[Callable[..., None], tuple[str, ...]]] = {
     "begin": (Console.begin, ("participant",)),
     "leave": (Console.leave, ()),
+    "retry": (Console.retry, ()),
     "start": (lambda console: console._command("start"), ()),
     "pause": (lambda console: console._command("pause", "experimenter"), ()),
     "resume": (lambda console: console._command("resume"), ()),

@@ -17,6 +17,7 @@ from typing import Any, NamedTuple
 from costeer.devices.head.calibration import HeadCalibration
 from costeer.devices.wheels.calibration import WheelCalibration
 from costeer.devices.wheels.interface import WheelDescription
+from costeer.devices.wheels.simulated import in_hands_of
 from costeer.loop.trial import git_revision
 from costeer.runtime.setup import DriveSetup, check_drive
 from costeer.sessions.attempts import Attempts
@@ -46,6 +47,7 @@ class Devices(NamedTuple):
         calibration: None for virtual hands.
         head: Makes the calibration of a participant's head; None without a tracker.
         checks: Looks at the devices: name, whether it is well, what to do.
+        haste: Of rehearsals with virtual hands.
     """
 
     input: str = "keyboard"
@@ -53,6 +55,7 @@ class Devices(NamedTuple):
     calibration: WheelCalibration | None = None
     head: Callable[[str], HeadCalibration | None] = lambda participant: None
     checks: Callable[[], list[tuple[str, bool, str]]] = list
+    haste: float = 1.0
 
 
 class Desk:
@@ -71,6 +74,7 @@ class Desk:
         self.participant = ""
         self._drive: StepDrive | None = None
         self._driven: tuple[str, str, int] | None = None
+        self._is_begun = False
         self._break_began: dict[tuple[str, str], float] = {}
         self.checked: list[dict[str, Any]] = []
         self.trouble = ""
@@ -239,42 +243,55 @@ class Desk:
     # Drives
 
     def _prepare(self, standing: Standing) -> None:
-        """Have the processes of a step that drives ready."""
-        step = standing.step
-        wanted = (standing.participant, step.id)
-        if self._is_closing or not step.drives or self.trouble:
+        """Have the processes of the drive that is on, or comes next, ready."""
+        who, over = standing.participant, self.session.over(standing.participant)
+        steps = self.session.steps_of(who)
+        ahead = [each for each in steps if each.drives and each.id not in over]
+        if self._is_closing or not ahead or self.trouble:
             return
-        if self._driven is not None:
-            if self._driven[:2] == wanted:
-                return  # it is on, or has just ended
-            self.leave_drive("another step is on")
-        if self._drive is not None:
-            return  # the one before still ends
         try:
-            self._start(standing)
+            if self._driven is not None and self._driven[:2] != (who, ahead[0].id):
+                self.leave_drive("another step is on")
+            if self._drive is None:
+                self._start(who, ahead[0])
+            if ahead[0].id == standing.step.id and not self._is_begun:
+                self._begin_attempt(who, ahead[0])
         except (ValueError, OSError) as error:
             self.trouble = str(error)
 
-    def _start(self, standing: Standing) -> None:
-        """Begin an attempt.
+    def _begin_attempt(self, who: str, step: Step) -> None:
+        """Write that the drive that is ready is driven.
+
+        Raises:
+            StoreError: If it cannot be written.
+        """
+        if self._drive is not None and self._driven is not None:
+            if self._driven[:2] != (who, step.id) or self._drive.is_ending:
+                return
+            self.attempts.start(who, step.id, self._facts(self._drive.setup))
+            self._is_begun = True
+
+    def _start(self, who: str, step: Step) -> None:
+        """Start the processes of an attempt.
 
         Raises:
             ValueError: If the drive cannot be.
             OSError: If nothing can be written.
         """
-        who, step = standing.participant, standing.step
-        plan, row = self.session.plan_of(who), self._row(who)
+        plan, slot = self.session.plan_of(who), int(self._row(who)["slot"])
+        trial = trial_of(plan, step, slot)
         setup = DriveSetup(
-            trial=trial_of(plan, step, int(row["slot"])),
-            wheel=self.devices.wheel,
+            trial=trial,
+            wheel=in_hands_of(self.devices.wheel, slot, step.id, trial.speed),
             calibration=self.devices.calibration,
             intention=plan.intention,
             head=self.devices.head(who),
             participant=who,
+            haste=self.devices.haste,
         )
         check_drive(setup)
-        number, record = self.attempts.start(who, step.id, self._facts(setup))
-        self._driven = (who, step.id, number)
+        number, record = self.attempts.next(who, step)
+        self._driven, self._is_begun = (who, step.id, number), False
         options = PageOptions(input=self.devices.input, show_signals=False)
         self._drive = StepDrive(setup, record, options, self._end)
         self._drive.begin()
@@ -302,16 +319,21 @@ class Desk:
         Pages are answered while the record is measured and written.
         """
         with self.lock:
-            driven, drive = self._driven, self._drive
+            driven, is_begun = self._driven, self._is_begun
         if driven is None:
             return
-        measures, reason = self._judged(driven, outcome)
-        self._keep(driven, measures, reason)
+        if is_begun:
+            self._keep(driven, *self._judged(driven, outcome))
         with self.lock:
-            if drive is not None and drive.state == FAILED:
-                self.trouble = reason  # or it would fail again and again
-            self._driven = self._drive = None
-            self._idle.notify_all()
+            self._forget_drive(outcome)
+
+    def _forget_drive(self, outcome: Outcome) -> None:
+        """No drive is on; one that could not start is not tried again and again."""
+        if self._drive is not None and self._drive.state == FAILED:
+            self.trouble = outcome.reason
+        self._driven = self._drive = None
+        self._is_begun = False
+        self._idle.notify_all()
 
     def _judged(
         self, driven: tuple[str, str, int], outcome: Outcome
@@ -337,7 +359,7 @@ class Desk:
                 self.trouble = str(error)
                 if self._is_closing:
                     return  # it is judged at the next start
-                time.sleep(1.0)
+                time.sleep(1.0)  # without the lock: pages say what is wrong
                 continue
             self.trouble = ""
             return

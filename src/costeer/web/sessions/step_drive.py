@@ -71,7 +71,7 @@ class StepDrive:
         options: PageOptions,
         ended: Callable[[Outcome], None],
     ) -> None:
-        self._setup, self._record, self._options = setup, record, options
+        self.setup, self._record, self._options = setup, record, options
         self._ended = ended
         self._lock = threading.Lock()
         self._is_ending = False
@@ -88,7 +88,7 @@ class StepDrive:
 
     def _start(self) -> None:
         try:
-            pages = DriveOnPages(self._setup, self._record, self._options)
+            pages = DriveOnPages(self.setup, self._record, self._options)
             pages.also(self._take, self._hear)
             pages.drive.start()
         except (ValueError, OSError, ModuleNotFoundError) as error:
@@ -101,7 +101,7 @@ class StepDrive:
     def _take(self, frame: NDArray[np.float64]) -> None:
         """Follow the drive by its frames."""
         self._frame = frame
-        if not self._is_ending:
+        if not self._is_ending and self.state != STARTING:
             self.state = _STATES[int(frame[PLACE["run_state"]])]
 
     def _hear(self, marker: Marker) -> None:
@@ -115,6 +115,11 @@ class StepDrive:
             self.reason = _words(marker)
         elif marker.kind in ("resumed", "started"):
             self.reason = ""
+
+    @property
+    def is_ending(self) -> bool:
+        """Whether it has been told to end."""
+        return self._is_ending
 
     def ask(self, command: str, *values: object) -> None:
         """Ask the real-time process for something.
@@ -186,7 +191,7 @@ class StepDrive:
             "reason": self.reason,
             "seconds": round(self.seconds, 2),
             "metres": round(self.metres, 1),
-            "length": self._setup.trial.length,
+            "length": self.setup.trial.length,
             "losses": losses,
             "has_page": pages is not None and pages.has_driver,
             "written": self._written(),

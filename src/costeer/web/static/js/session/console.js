@@ -77,12 +77,17 @@ class Console {
     return undefined;
   }
 
+  retry() {
+    return make("button", { type: "button", onclick: () => this.act("retry").catch(() => {}) },
+      "Try again");
+  }
+
   /** What is wrong with the session as a whole, as long as it is. */
   showBanners() {
     const { trouble, step, disk } = this.state ?? {};
     const texts = [
       this.isLost && "The server does not answer. Trying again; a drive pauses by itself.",
-      trouble && `${trouble} (Check tries again.)`,
+      trouble,
       step?.drive?.reason,
       ...(step?.drive?.losses ?? []),
       ...(step?.drive?.unkept ?? []),
@@ -91,7 +96,8 @@ class Console {
     const key = texts.join("\n");
     if (key === this.banners) return;
     this.banners = key;
-    byId("banners").replaceChildren(...texts.map((text) => make("li", {}, text)));
+    byId("banners").replaceChildren(...texts.map((text) => make("li", {}, text,
+      ...(text === trouble ? [this.retry()] : []))));
   }
 }
 

@@ -80,7 +80,7 @@ function radioField(item, id, texts, options, look) {
         label ?? number)));
   const row = make("div", { class: `row ${look}` }, ...places);
   if (look === "ticks") followFinger(row, radios);
-  if (look === "choices") row.style.setProperty("--least", `${longestWord(options)}em`);
+  if (look === "choices") row.style.setProperty("--least", `${widthOf(options)}em`);
   const parts = [row];
   const described = [error.id];
   if (item.low_text && look !== "choices") {
@@ -115,10 +115,11 @@ function radioField(item, id, texts, options, look) {
   };
 }
 
-/** Width that the longest word of the answers needs [em], about. */
-function longestWord(options) {
-  const all = options.flatMap(({ label }) => label.split(/[\s-]+/));
-  return Math.min(Math.max(...all.map((word) => word.length)), 14) * 0.56 + 0.6;
+/** Width at which all answers stand side by side, in two lines at most [em], about. */
+function widthOf(options) {
+  const longest = Math.max(...options.flatMap(({ label }) =>
+    [label.length / 2, ...label.split(/[\s-]+/).map((word) => word.length)]));
+  return options.length * (longest * 0.56 + 1);
 }
 
 /** Let a finger or pointer slide along narrow ticks. */

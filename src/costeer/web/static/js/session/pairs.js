@@ -59,7 +59,7 @@ export function makePairs(pairs, items, id, texts) {
     const isDone = at >= pairs.length;
     row.hidden = isDone;
     hint.hidden = isDone;
-    back.disabled = at === 0;
+    back.hidden = at === 0;
     if (isDone) {
       place.textContent = words(texts, "pairs_done", { count: pairs.length });
       return;

@@ -120,7 +120,7 @@ export class Signals {
     this.values = CHARTS.map((chart) => chart.signals.map(() =>
       make("span", { class: "value" }, "–")));
     const rows = CHARTS.map((chart, n) => make("div", { class: "chart" },
-      make("div", { class: "name" }, chart.name, ...this.values[n].map((value, k) =>
+      make("div", { class: "name" }, nameOf(chart), ...this.values[n].map((value, k) =>
         make("span", { class: k ? "second" : "first" }, value))),
       make("div", { class: "plot" })));
     this.parent.replaceChildren(this.back, ...rows);
@@ -138,7 +138,7 @@ export class Signals {
     const axis = { stroke: colour("--dim"), grid: { stroke: colour("--grid"), width: 1 },
       ticks: { stroke: colour("--grid"), width: 1, size: 3 }, font: "12px system-ui, sans-serif" };
     return {
-      width: 300, height: 60,
+      width: 300, height: 60, padding: [6, 16, 0, 0],
       legend: { show: false },
       cursor: { sync: { key: "console" }, y: false, points: { size: 6 },
         drag: { x: true, y: false, setScale: false } },
@@ -146,7 +146,7 @@ export class Signals {
         y: { range: (_, low, high) => limitsOf(chart, low, high) } },
       axes: [
         { ...axis, show: n === CHARTS.length - 1, size: 20, values: (_, all) => all.map((t) => `${t} s`) },
-        { ...axis, size: 42, space: 18 },
+        { ...axis, size: 42, space: 20 },
       ],
       series: [{}, ...chart.signals.map((_, k) => ({
         stroke: colour(k ? "--two" : "--one"), width: 2, points: { show: false },
@@ -198,12 +198,16 @@ export class Signals {
     const hovered = this.plots?.[0].cursor.idx;
     const place = hovered ?? this.times.length - 1;
     let signal = 0;
-    CHARTS.forEach(({ signals, unit, digits }, n) => signals.forEach(({ label }, k) => {
+    CHARTS.forEach(({ signals, digits }, n) => signals.forEach(({ label }, k) => {
       const value = this.series[signal++][place] ?? Number.NaN;
-      const after = [unit, label].filter(Boolean).join(" ");
-      this.values[n][k].replaceChildren(shownNumber(value, digits), make("small", {}, ` ${after}`));
+      const text = shownNumber(value, digits);
+      this.values[n][k].replaceChildren(text, make("small", {}, label ? ` ${label}` : ""));
     }));
   }
+}
+
+function nameOf({ name, unit }) {
+  return unit ? `${name} [${unit}]` : name;
 }
 
 /** Limits of a chart's values: never so narrow that noise looks like a signal. */
