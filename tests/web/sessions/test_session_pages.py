@@ -30,6 +30,7 @@ def begin(study: Study, console: Page, name: str = "P01") -> None:
 
 def agree(page: Page) -> None:
     """Tick what a consent asks."""
+    page.get_by_role("checkbox").first.wait_for()
     for box in page.get_by_role("checkbox").all():
         box.check()
     page.locator("form input[type=text]").fill("AB")
@@ -50,7 +51,8 @@ def step_of(study: Study) -> str:
 
 
 def rate(page: Page) -> None:
-    """Give every statement the third of five answers."""
+    """Give every statement the third of its answers."""
+    page.get_by_role("radiogroup").first.wait_for()
     for group in page.get_by_role("radiogroup").all():
         group.get_by_role("radio").nth(2).check()
 
@@ -107,7 +109,6 @@ def test_answers_sent_twice_are_kept_once(study: Study, open_page: OpenPage) -> 
     begin(study, console)
     go_to_questions(study, page)
     for each in (page, other):
-        each.get_by_role("radiogroup").first.wait_for()
         rate(each)
     page.get_by_role("button", name="Continue").dblclick()
     page.get_by_role("heading", name="Break").wait_for()
