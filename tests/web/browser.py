@@ -64,12 +64,12 @@ def page_of(width: int = 640, height: int = 360) -> Iterator[tuple[Page, list[st
 
 
 class Server(NamedTuple):
-    """`costeer drive` or `costeer replay` that runs.
+    """`costeer drive`, `session run` or `replay` that runs.
 
     Attributes:
         process: Of the command.
         address: Of the driver's page.
-        experimenter: Of the experimenter's page; empty for a replay.
+        experimenter: Of the experimenter's page or console; empty for a replay.
     """
 
     process: subprocess.Popen[str]
@@ -85,7 +85,7 @@ def serving(*words: str) -> Iterator[Server]:
         command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
     )
     try:
-        addresses = _addresses(process, 2 if words[0] == "drive" else 1)
+        addresses = _addresses(process, 1 if words[0] == "replay" else 2)
         yield Server(process, addresses[0], (*addresses, "")[1])
     finally:
         stop(process)

@@ -256,6 +256,11 @@ class DriveOnPages:
             )
         self._num_drivers += 1
 
+    @property
+    def has_driver(self) -> bool:
+        """Whether a page that drives is open."""
+        return self._num_drivers > 0
+
     def client_left(self, role: Role) -> None:
         """Forget a page; without one that drives the trial pauses."""
         if role != "driver":

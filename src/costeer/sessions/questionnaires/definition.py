@@ -6,6 +6,7 @@ import itertools
 import math
 import re
 from collections.abc import Mapping, Sequence
+from functools import lru_cache
 from importlib.resources import files
 from pathlib import Path
 from typing import Any, Literal, NamedTuple, get_args
@@ -162,6 +163,12 @@ def read_mapping(path: Path) -> dict[str, Any]:  # Any: as YAML gives it back
         ValueError: If it is no YAML, or not `name: value` lines.
         OSError: If it cannot be read.
     """
+    return dict(_read_mapping(path, path.stat().st_mtime_ns))
+
+
+@lru_cache(maxsize=64)  # pages ask for the words twice a second
+def _read_mapping(path: Path, changed: int) -> dict[str, Any]:
+    """As `read_mapping`, of a file that was changed at that time [ns]."""
     content = read_whole(path, _LARGEST_FILE)
     try:
         said = yaml.load(content, _LOADER)

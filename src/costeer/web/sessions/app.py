@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import time
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
@@ -14,6 +15,7 @@ from starlette.routing import BaseRoute, Route, WebSocketRoute
 from starlette.types import ASGIApp
 from starlette.websockets import WebSocket
 
+from costeer.sessions.questionnaires.answers import AnswersError
 from costeer.sessions.session import OutOfStepError
 from costeer.sessions.store import StoreError
 from costeer.web.app import application, hello, hold, json_response
@@ -69,6 +71,7 @@ def _participant_routes(desk: Desk) -> list[BaseRoute]:
     """What the participant's page asks."""
 
     async def answer_state(request: Request) -> Response:
+        desk.page_seen = time.monotonic()
         return await _answered(desk.state)
 
     async def answer_next(request: Request) -> Response:
@@ -163,6 +166,8 @@ async def _answered(
         return _refused(409, str(error), now)
     except StoreError as error:
         return _refused(507, str(error))
+    except AnswersError as error:
+        return _refused(400, str(error), {"problems": error.codes()})
     except (ValueError, OSError) as error:
         return _refused(400, str(error))
 

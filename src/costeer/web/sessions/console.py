@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import shutil
+import time
 from collections.abc import Callable, Mapping
 from datetime import datetime
 from typing import Any
 
 from costeer.sessions.plan import balance
+from costeer.sessions.questionnaires.texts import languages
 from costeer.sessions.session import ACTIVE, FINISHED
 from costeer.sessions.store import now
 from costeer.web.sessions.desk import Desk
@@ -48,10 +50,13 @@ class Console:
                 "step": step,
                 "steps": self._all_steps(),
                 "people": self._people(),
+                "languages": languages(self._session.folder),
+                "language": self._session.plan.language,
                 "planned": self._session.plan.participants,
                 "withdrawn": self._session.num_withdrawn(),
                 "attempts": self._attempts(),
                 "checks": self._desk.checked,
+                "page_seen": time.monotonic() - self._desk.page_seen,
                 "disk": {"free": free, "enough": free > SCARCE},
                 "balance": self._balance(),
                 "trouble": self._desk.trouble,
@@ -130,16 +135,22 @@ class Console:
             missing = [name for name in names if name not in given]
             if missing:
                 raise ValueError(f"{action} needs {', '.join(missing)}")
-            function(self, *(given[name] for name in names))
+            more = [given[name] for name in _OPTIONAL.get(action, ()) if name in given]
+            function(self, *(given[name] for name in names), *more)
             return self.shown()
 
-    def begin(self, participant: str) -> None:
+    def begin(self, participant: str, language: str = "") -> None:
         """Let a participant sit down."""
         told = str(participant).strip()
+        known = languages(self._session.folder)
+        if language and language not in known:
+            raise ValueError(
+                f"language '{language}' is not known; choose one of {', '.join(known)}"
+            )
         if self._desk.participant and self._desk.participant != told:
             self._refuse_while_driving()
             self._desk.leave_drive("another participant sat down")
-        self._session.begin(told)
+        self._session.begin(told, str(language))
         self._desk.participant = told
         self._desk.trouble = ""
 
@@ -252,3 +263,6 @@ ACTIONS: dict[str, tuple[Callable[..., None], tuple[str, ...]]] = {
     "check": (Console.check, ()),
 }
 """What the console can ask for, and what it has to say with it."""
+
+_OPTIONAL = {"begin": ("language",)}
+"""What may be said with an action besides."""

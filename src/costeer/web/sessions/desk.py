@@ -6,6 +6,8 @@ store has changed it before it returns.
 
 from __future__ import annotations
 
+import hashlib
+import math
 import threading
 import time
 from collections.abc import Callable, Mapping
@@ -76,6 +78,7 @@ class Desk:
         self._break_began: dict[tuple[str, str], float] = {}
         self.checked: list[dict[str, Any]] = []
         self.trouble = ""
+        self.page_seen = -math.inf
         self._is_closing = False
 
     # What is on
@@ -127,6 +130,8 @@ class Desk:
             "number": standing.number,
             "of": standing.of,
             "minutes": step.minutes,
+            "order": step.order,
+            "trials": self._num_trials(standing.participant),
             "self_paced": self.session.plan_of(standing.participant).self_paced,
         }
         if step.kind in ("ask", "consent"):
@@ -141,6 +146,10 @@ class Desk:
             shown["enough"] = self._is_enough(step)
         return shown
 
+    def _num_trials(self, participant: str) -> int:
+        steps = self.session.steps_of(participant)
+        return sum(each.kind == "drive" for each in steps)
+
     def _words(self, step: Step) -> dict[str, str]:
         """Heading and text of a step: of the text files, or the plan's own."""
         pages = load_texts(self._language(), self.session.folder).pages
@@ -153,7 +162,7 @@ class Desk:
     def _seed(self, participant: str, step: Step) -> int:
         """Of a questionnaire's random order: the same after a reload."""
         told = f"{self.session.plan.seed} {participant} {step.id}"
-        return int.from_bytes(told.encode()) % 2**63
+        return int.from_bytes(hashlib.sha256(told.encode()).digest()[:7])
 
     def _remaining(self, standing: Standing) -> float:
         """Of a break [s]."""
@@ -305,21 +314,17 @@ class Desk:
         return next(row for row in rows if row["participant"] == participant)
 
     def _end(self, outcome: Outcome) -> None:
-        """Keep how an attempt ended; called in a thread of the drive."""
+        """Keep how an attempt ended; called in a thread of the drive.
+
+        Pages are answered while the record is measured and written.
+        """
         with self.lock:
-            driven = self._driven
-            if driven is None:
-                return
-            if not self._is_begun:
-                self._forget_drive(outcome)
-                return
-            who, step, _ = driven
-            measures, reason = None, outcome.reason
-            if outcome.record is not None and outcome.reached_end:
-                steps = {each.id: each for each in self.session.steps_of(who)}
-                measures, said = measured(outcome.record, steps[step])
-                reason = "; ".join(each for each in (reason, said) if each)
-            self._keep(driven, measures, reason or outcome.reason)
+            driven, is_begun = self._driven, self._is_begun
+        if driven is None:
+            return
+        if is_begun:
+            self._keep(driven, *self._judged(driven, outcome))
+        with self.lock:
             self._forget_drive(outcome)
 
     def _forget_drive(self, outcome: Outcome) -> None:
@@ -329,6 +334,16 @@ class Desk:
         self._driven = self._drive = None
         self._is_begun = False
         self._idle.notify_all()
+
+    def _judged(
+        self, driven: tuple[str, str, int], outcome: Outcome
+    ) -> tuple[dict[str, Any] | None, str]:
+        """Measures of an attempt that is whole, and what to know of it."""
+        if outcome.record is None or not outcome.reached_end:
+            return None, outcome.reason
+        steps = {each.id: each for each in self.session.steps_of(driven[0])}
+        measures, said = measured(outcome.record, steps[driven[1]])
+        return measures, "; ".join(each for each in (outcome.reason, said) if each)
 
     def _keep(
         self,
@@ -344,7 +359,7 @@ class Desk:
                 self.trouble = str(error)
                 if self._is_closing:
                     return  # it is judged at the next start
-                self._idle.wait(1.0)  # the lock is free meanwhile
+                time.sleep(1.0)  # without the lock: pages say what is wrong
                 continue
             self.trouble = ""
             return

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import threading
+import time
 from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -14,6 +16,7 @@ from costeer.runtime.frame import PLACE
 from costeer.runtime.markers import Marker
 from costeer.runtime.setup import DriveSetup
 from costeer.runtime.states import Fault, RunState
+from costeer.runtime.stream import record_paths
 from costeer.web.drive import DriveOnPages, PageOptions
 
 STARTING, READY, RUNNING, PAUSED, SAVING, OVER, FAILED = (
@@ -168,6 +171,13 @@ class StepDrive:
         """Driven [m]; 0 before the start."""
         return self._number("longitudinal_position")
 
+    def _written(self) -> float | None:
+        """How long ago the record was written last [s]; None before it is begun."""
+        for file in (record_paths(self._record).stream, self._record):
+            with suppress(OSError):
+                return round(max(0.0, time.time() - file.stat().st_mtime), 2)
+        return None
+
     def _number(self, name: str) -> float:
         frame = self._frame
         if frame is None:
@@ -185,6 +195,8 @@ class StepDrive:
             "metres": round(self.metres, 1),
             "length": self.setup.trial.length,
             "losses": losses,
+            "has_page": pages is not None and pages.has_driver,
+            "written": self._written(),
             "unkept": [] if pages is None else list(pages.drive.unkept),
         }
 

@@ -58,6 +58,13 @@ export class Link {
     if (this.connected) this.worker.postMessage({ kind: "send", text: JSON.stringify(message) });
   }
 
+  /** Close the socket and never open it again. */
+  close() {
+    this.isOver = true;
+    this.connected = false;
+    this.worker.terminate();
+  }
+
   /**
    * Send what hands and feet do; also the sign that this page lives.
    * @param {{steer: number, accelerator: number, brake: number}} controls

@@ -1,0 +1,111 @@
+/** The experimenter's console: shows the session, and does what the experimenter decides. */
+
+import { byId, make } from "../elements.js";
+import { credentials } from "../options.js";
+import { Actions } from "./actions.js";
+import { facts, shownState } from "./facts.js";
+import { Panels } from "./panels.js";
+import { ask, Follower } from "./server.js";
+import { Signals } from "./signals.js";
+
+/** Time between two questions for the state [ms]. */
+const OFTEN = 500;
+/** States of a drive in which its socket is open. */
+const OPEN = new Set(["ready", "running", "paused"]);
+
+class Console {
+  constructor() {
+    this.query = credentials(location.search);
+    this.state = null;
+    this.isLost = false;
+    this.duration = Number.NaN;
+    this.signals = new Signals(byId("charts"), this.query);
+    this.follower = new Follower(() => ask("api/console", this.query), {
+      take: (state, duration) => this.take(state, duration),
+      lost: () => this.lost(),
+      pause: () => OFTEN,
+    });
+    const act = (action, body) => this.act(action, body);
+    this.actions = new Actions(act, () => this.state);
+    this.panels = new Panels(act, this.actions);
+    this.follower.follow();
+    setInterval(() => this.showFacts(), 200);
+  }
+
+  /** Do something; the answer is the new state. */
+  act(action, body = {}) {
+    return this.follower.send(() => ask(`api/console/${action}`, this.query, body));
+  }
+
+  lost() {
+    this.isLost = true;
+    this.showFacts();
+    this.showBanners();
+  }
+
+  take(state, duration) {
+    this.isLost = false;
+    if (duration) this.duration = duration;
+    this.state = state;
+    const { step } = state;
+    const drive = step?.drive;
+    const attempt = state.attempts.filter((each) => each.step === step?.id).length;
+    this.signals.follow(OPEN.has(drive?.state) ? `${state.participant}/${step.id}/${attempt}` : "");
+    this.actions.show(state);
+    this.panels.show(state);
+    this.showFacts();
+    this.showBanners();
+  }
+
+  /** The line at the top: where the session stands. */
+  showFacts() {
+    if (!this.state) return this.isLost ? setState("NO LINK", "lost") : undefined;
+    const [word, kind] = this.isLost ? ["NO LINK", "lost"] : shownState(this.state);
+    setState(word, kind);
+    const { participant, step } = this.state;
+    const told = step ? `${step.number} of ${step.of}: ${step.id}` : "no participant";
+    const who = byId("who");
+    if (who.title !== participant + told) {
+      who.title = participant + told;
+      const place = make("small", {}, step?.kind === "done" ? "all steps are done" : told);
+      who.replaceChildren(participant || "–", place);
+    }
+    const rows = facts(this.state, this.signals, this.isLost ? Number.NaN : this.duration);
+    byId("facts").replaceChildren(...rows.map(({ name, value, unit, kind: look }) =>
+      make("div", {}, make("dt", {}, name),
+        make("dd", { class: look ?? "" }, value, make("small", {}, unit ? ` ${unit}` : "")))));
+    return undefined;
+  }
+
+  retry() {
+    return make("button", { type: "button", onclick: () => this.act("retry").catch(() => {}) },
+      "Try again");
+  }
+
+  /** What is wrong with the session as a whole, as long as it is. */
+  showBanners() {
+    const { trouble, step, disk } = this.state ?? {};
+    const texts = [
+      this.isLost && "The server does not answer. Trying again; a drive pauses by itself.",
+      trouble,
+      step?.drive?.reason,
+      ...(step?.drive?.losses ?? []),
+      ...(step?.drive?.unkept ?? []),
+      disk && !disk.enough && "The disk is nearly full: free some space before the next drive.",
+    ].filter(Boolean);
+    const key = texts.join("\n");
+    if (key === this.banners) return;
+    this.banners = key;
+    byId("banners").replaceChildren(...texts.map((text) => make("li", {}, text,
+      ...(text === trouble ? [this.retry()] : []))));
+  }
+}
+
+function setState(word, kind) {
+  const place = byId("state");
+  if (place.textContent === word) return;
+  place.textContent = word;
+  place.className = kind;
+}
+
+new Console();
