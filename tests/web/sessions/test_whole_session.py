@@ -62,8 +62,10 @@ def fill(page: Page) -> None:
         box.check()
     for group in page.get_by_role("radiogroup").all():
         group.get_by_role("radio").nth(3).check()
-    for text in page.locator("textarea").all():
+    for text in page.locator("form textarea").all():
         text.fill(HTML)
+    for text in page.locator("form input[type=text]").all():
+        text.fill("AB")
     for _ in range(15):
         if page.locator(".side").count():
             page.locator(".side").first.click()
