@@ -40,6 +40,7 @@ LIBRARIES = (
     Library("opencv-python-headless", "drive", ("cv2",), _HEAD),
     Library("pysdl2", "drive", ("sdl2",), "steering wheels"),
     Library("hidapi", "drive", ("hid",), "Logitech wheels without a driver"),
+    Library("playwright", "rehearse", ("playwright",), "rehearsals of a session"),
     Library("mcap", "drive", ("mcap",), "export to MCAP"),
     Library("protobuf", "drive", ("google", "google.protobuf")),
     Library("python-can", "can", ("can",), "a SENSO-Wheel"),

@@ -53,12 +53,28 @@ def session(
         typer.Option("--browser/--no-browser", help="With run: open the console."),
     ] = True,
     haste: Annotated[
-        float,
+        float | None,
         typer.Option(
-            help="With run and --wheel simulated:virtual: seconds of a drive in a "
-            "second."
+            help="With rehearse, or run --wheel simulated:virtual: seconds of a drive "
+            "in a second."
         ),
+    ] = None,
+    participants: Annotated[
+        int, typer.Option(help="With rehearse: how many are simulated.")
+    ] = 12,
+    accidents: Annotated[
+        float,
+        typer.Option(help="With rehearse: how often a minute something is killed."),
     ] = 1.0,
+    conditions: Annotated[
+        str, typer.Option(help="With rehearse: of the assisted trials, by commas.")
+    ] = "",
+    length: Annotated[
+        float, typer.Option(help="With rehearse: of a trial [m].")
+    ] = 600.0,
+    seed: Annotated[
+        int, typer.Option(help="With rehearse: of answers and accidents.")
+    ] = 1,
 ) -> None:
     """Run a study with people: plan, questionnaires, drives, data.
 
@@ -70,11 +86,15 @@ def session(
         costeer session run my-study
         costeer session status my-study
     """
+    rehearsal = _Rehearsal(participants, seed, accidents, haste, conditions, length)
     acts = {
         "new": partial(_new, folder, plan),
-        "run": partial(_run, folder, _Lab(wheel, head, haste), (host, port), browser),
+        "run": partial(
+            _run, folder, _Lab(wheel, head, haste or 1.0), (host, port), browser
+        ),
         "status": partial(_status, folder),
         "withdraw": partial(_withdraw, folder, participant),
+        "rehearse": partial(_rehearse, folder, rehearsal),
     }
     if action not in acts:
         known = ", ".join(acts)
@@ -113,6 +133,53 @@ def _new(folder: Path, plan: Path | None) -> None:
         f"costeer: {found.participants} participants, {told}; edit the plan, then run:"
     )
     note(f"costeer session run {folder}")
+
+
+class _Rehearsal(NamedTuple):
+    """What is rehearsed, in words."""
+
+    participants: int
+    seed: int
+    accidents: float
+    haste: float | None
+    conditions: str
+    length: float
+
+
+def _rehearse(folder: Path, said: _Rehearsal) -> None:
+    """Rehearse a study, print what came of it.
+
+    Raises:
+        typer.Exit: With 1 if something was lost.
+    """
+    from costeer.methods.conditions import parse_conditions
+    from costeer.sessions.rehearse import RehearsalSettings, rehearse
+
+    usual = RehearsalSettings()
+    settings = RehearsalSettings(
+        participants=said.participants,
+        seed=said.seed,
+        accidents=said.accidents,
+        haste=usual.haste if said.haste is None else said.haste,
+        length=said.length,
+        conditions=parse_conditions(said.conditions) if said.conditions else (),
+    )
+    found = rehearse(folder, settings, lambda text: note(f"costeer: {text}"))
+    killed = ", ".join(f"{what} {n}" for what, n in found.accidents.items())
+    print_table(
+        ["what", "found"],
+        [
+            ["participants who finished", str(found.participants)],
+            ["answers, of them lost", f"{found.answers}, {found.lost_answers}"],
+            ["finished drives, of them lost", f"{found.trials}, {found.lost_trials}"],
+            ["killed on the way", killed],
+            ["orders balanced", "yes" if found.even else "no"],
+            ["time", f"{found.seconds / 60.0:.1f} min"],
+        ],
+    )
+    lost = found.lost_answers + found.lost_trials
+    if lost or found.participants < said.participants:
+        raise typer.Exit(1)
 
 
 class _Lab(NamedTuple):

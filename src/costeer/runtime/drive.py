@@ -166,6 +166,14 @@ class Drive:
         return 0 if self._realtime is None else int(self._realtime.pid or 0)
 
     @property
+    def pids(self) -> dict[str, int]:
+        """Numbers of the processes that run, by what they are."""
+        running = {"loop": self._realtime} | {
+            which.word: process for which, process in self._helpers.processes.items()
+        }
+        return {name: int(p.pid or 0) for name, p in running.items() if p is not None}
+
+    @property
     def losses(self) -> list[Loss]:
         """What the drive goes on without."""
         return list(self._helpers.losses)

@@ -126,6 +126,11 @@ class Driving:
         """Of the trial [s]."""
         return float(self._cabin.memory.row[_TIME])
 
+    @property
+    def is_running(self) -> bool:
+        """Whether the trial runs."""
+        return self._run_state == RunState.RUNNING
+
     # The control step, 60 Hz
 
     def control_step(self, lateness: float) -> None:

@@ -36,7 +36,7 @@ def run_realtime(setup: DriveSetup, links: Links) -> None:
         drive = Driving(setup, links, shared)
         end_at_signals(drive)
         drive.warm_up()
-        priority, core = privileged()
+        priority, core = privileged() if setup.haste == 1.0 else (UNHURRIED, None)
         gc.collect()
         gc.freeze()
         gc.disable()
@@ -51,6 +51,10 @@ def run_realtime(setup: DriveSetup, links: Links) -> None:
             drive.close()
         links.commands.close()
         close_shared(shared, unlink=False)
+
+
+UNHURRIED = Priority(False, "a rehearsal in haste asks for no priority")
+"""What a process says that would take a core for itself."""
 
 
 def end_at_signals(drive: Driving) -> None:
@@ -87,11 +91,12 @@ def pace(drive: Driving, shared: Shared, spin: float, haste: float = 1.0) -> Non
         spin: How long before a step sleeping ends [s].
         haste: Seconds of the trial in a second of the clock.
     """
-    pacer = Pacer(PLANT_DT / haste, spin)
+    pacer = Pacer(PLANT_DT, spin)
     shared.mailbox.put(heartbeat=time.perf_counter(), armed=1.0)
     lateness = 0.0
     while not drive.stopping:
         latest = 0.0
+        pacer.hurry(PLANT_DT / haste if drive.is_running else PLANT_DT)
         for step in range(PLANT_STEPS):
             late = pacer.wait()
             latest = max(latest, late)

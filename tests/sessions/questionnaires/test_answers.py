@@ -104,6 +104,12 @@ def test_consent_is_agreed_to_in_every_point() -> None:
     assert codes("consent", wordy) == {"experimenter_initials": "too_long"}
 
 
+@pytest.mark.parametrize("given", [None, [], "yes", 3])
+def test_what_is_no_set_of_answers_is_refused(given: object) -> None:
+    with pytest.raises(AnswersError, match="fms: answers are none"):
+        checked_answers(load_definition("fms"), given)
+
+
 def test_html_stays_text() -> None:
     comment = "<script>alert(1)</script> & <b>bold</b>"
     found = checked_answers(load_definition("likert"), {**LIKERT, "comment": comment})

@@ -215,6 +215,9 @@ SCALE = {"name": "a", "kind": "scale", "low": 0, "high": 3}
         ({"items": [{"name": "a", "kind": "pairs", "of": ["b", "b"]}]}, "name twice"),
         ({"items": [{"name": "a", "kind": "text", "longest": 9999}]}, "give 1 to 2000"),
         ({"items": [SCALE], "scores": {"s": {"mean": ["b"]}}}, r"\['b'\] is no scale"),
+        ({"items": [SCALE], "scores": {"s": {"mean": [["a"]]}}}, "is no scale"),
+        ({"items": [SCALE], "scores": {"s": {"weighted": ["a"]}}}, "no pairs to weigh"),
+        ({"items": [{"name": "a", "kind": "choice", "options": [True]}]}, "in quotes"),
         ({"items": [SCALE], "scores": {"s": 1}}, "give one of mean, sum, weighted"),
         ({"items": [SCALE], "scores": [1]}, "scores: give NAME: VALUE lines"),
         ({"items": [SCALE], "stop": {"score": "s", "at_least": 1}}, "'s' is no score"),
@@ -245,3 +248,31 @@ def test_an_unknown_field_of_texts_is_refused(tmp_path: Path) -> None:
     folder = write(tmp_path, "texts/en.yaml", {"page": {}})
     with pytest.raises(ValueError, match="no field 'page'; choose from blanks"):
         load_texts("en", folder)
+
+
+@pytest.mark.parametrize(
+    ("said", "told"),
+    [
+        ({"pages": {"form_submit": None}}, "pages: form_submit: give a text"),
+        ({"pages": ["a"]}, "pages: give NAME: VALUE lines"),
+        ({"instruments": {"fms": "a"}}, "fms: give NAME: VALUE lines"),
+        ({"instruments": {"fms": {"items": ["a"]}}}, "fms: items: give NAME: VALUE"),
+        ({"instruments": {"fms": {"items": {"sickness": 1}}}}, "fms: sickness: give"),
+        ({"instruments": {"fms": {"labels": ["a"]}}}, "fms: labels: give NAME"),
+        ({"instruments": {"fms": {"instruction": 1}}}, "give a list of paragraphs"),
+    ],
+)
+def test_a_wrong_text_is_refused_with_its_place(
+    tmp_path: Path, said: object, told: str
+) -> None:
+    folder = write(tmp_path, "texts/en.yaml", said)
+    with pytest.raises(ValueError, match=told) as refused:
+        load_texts("en", folder)
+    assert "en.yaml" in str(refused.value)
+
+
+def test_a_text_alone_changes_the_question_and_keeps_the_rest(tmp_path: Path) -> None:
+    words = {"instruments": {"fms": {"items": {"sickness": "Sick?"}}}}
+    folder = write(tmp_path, "texts/en.yaml", words)
+    item = load_instrument("fms", "en", folder).texts["sickness"]
+    assert (item.text, item.low) == ("Sick?", "No sickness at all")

@@ -72,6 +72,8 @@ def checked_answers(
         AnswersError: If answers are missing, out of range, between two steps, too
             long, not asked for or personal; all of them are named at once.
     """
+    if not isinstance(given, Mapping):  # what a page sends may be anything
+        raise AnswersError(instrument.name, {"answers": Problem("unknown", "are none")})
     problems: dict[str, Problem] = {}
     answers: dict[str, Value] = {}
     for item in instrument.items:

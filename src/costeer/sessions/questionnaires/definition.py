@@ -261,9 +261,14 @@ def _score(name: str, entry: object, items: Sequence[Item]) -> Score:
     _refuse_unknown(where, entry, {*get_args(How), "factor"})
     of = entry[hows[0]]
     known = {item.name for item in items if item.kind in ("scale", "number")}
-    missing = [n for n in of if n not in known] if isinstance(of, list) else [of]
+    names = of if isinstance(of, list) else [of]
+    missing = [n for n in names if not isinstance(n, str) or n not in known]
     if missing or not of:
         raise ValueError(f"{where}: {missing} is no scale or number of this instrument")
+    if hows[0] == "weighted" and all(item.kind != "pairs" for item in items):
+        raise ValueError(
+            f"{where}: there are no pairs to weigh by; give an item of them"
+        )
     factor = _number(where, entry, "factor", 1.0)
     return Score(name, hows[0], tuple(map(str, of)), factor)
 
@@ -302,7 +307,10 @@ def _names(where: str, entry: Said, field: str) -> tuple[str, ...]:
     value = entry.get(field)
     names = value if isinstance(value, list) else []
     if len(names) < 2 or not all(isinstance(n, str) for n in names):
-        raise ValueError(f"{where}: {field} is {value!r}; give a list of two or more")
+        raise ValueError(
+            f"{where}: {field} is {value!r}; give a list of two or more texts, yes and "
+            "no in quotes"
+        )
     if len(set(names)) < len(names):
         raise ValueError(f"{where}: {field} has a name twice: {', '.join(names)}")
     return tuple(names)

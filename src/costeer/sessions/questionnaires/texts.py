@@ -72,11 +72,36 @@ def load_texts(language: str, folder: Path | None = None) -> Texts:
                 f"{path}: there is no field {unknown[0]!r}; choose from "
                 f"{', '.join(sorted(_FIELDS))}"
             )
+        _refuse_shapes(path, said)
         words = merged(words, said)
     blanks = {k: str(v) for k, v in words.get("blanks", {}).items() if v}
     pages = {k: filled(str(v), blanks) for k, v in words.get("pages", {}).items()}
     _refuse_missing(paths[-1], pages)
     return Texts(language, pages, words.get("instruments", {}), blanks)
+
+
+def _refuse_shapes(path: Path, said: Words) -> None:
+    """Raise ValueError where neither words nor lines of them are written."""
+    for field in ("wording", "blanks", "pages"):
+        for key, text in _lines(path, field, said.get(field, {})).items():
+            if not isinstance(text, str):
+                raise ValueError(f"{path}: {field}: {key}: give a text in quotes")
+    for name, words in _lines(path, "instruments", said.get("instruments", {})).items():
+        items = _lines(path, name, words).get("items", {})
+        for item, text in _lines(path, f"{name}: items", items).items():
+            if not isinstance(text, str):
+                _lines(path, f"{name}: {item}", text)
+        instruction = words.get("instruction", [])
+        if not isinstance(instruction, str | list):
+            raise ValueError(f"{path}: {name}: instruction: give a list of paragraphs")
+        for each in (words, *(i for i in items.values() if isinstance(i, dict))):
+            _lines(path, f"{name}: labels", each.get("labels", {}))
+
+
+def _lines(path: Path, where: str, value: object) -> Words:
+    if not isinstance(value, dict):
+        raise ValueError(f"{path}: {where}: give NAME: VALUE lines")
+    return value
 
 
 def _refuse_missing(path: Path, pages: Mapping[str, str]) -> None:
@@ -88,10 +113,17 @@ def _refuse_missing(path: Path, pages: Mapping[str, str]) -> None:
 
 
 def merged(under: Words, over: Words) -> dict[str, Any]:  # Any: nested texts
-    """Words with others laid over them, level by level."""
+    """Words with others laid over them, level by level.
+
+    A text alone is the `text` of an item that has more.
+    """
     both = dict(under)
     for key, value in over.items():
         below = both.get(key)
+        if isinstance(below, dict) and isinstance(value, str):
+            value = {"text": value}
+        elif isinstance(below, str) and isinstance(value, dict):
+            below = {"text": below}
         if isinstance(value, dict) and isinstance(below, dict):
             value = merged(below, value)
         both[key] = value

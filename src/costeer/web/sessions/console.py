@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import shutil
 import time
 from collections.abc import Callable, Mapping
@@ -59,6 +60,7 @@ class Console:
                 "page_seen": time.monotonic() - self._desk.page_seen,
                 "disk": {"free": free, "enough": free > SCARCE},
                 "balance": self._balance(),
+                "processes": self._processes(),
                 "trouble": self._desk.trouble,
                 "events": self._events(),
             }
@@ -103,6 +105,12 @@ class Console:
             | {"measures": {n: row["measures"].get(n) for n in _SHOWN}}
             for row in self._desk.attempts.listed(self._desk.participant)
         ]
+
+    def _processes(self) -> dict[str, int]:
+        """Numbers of the processes that run, for who looks into trouble."""
+        drive = self._desk.drive
+        told = {} if drive is None or drive.pages is None else drive.pages.drive.pids
+        return {"server": os.getpid(), **told}
 
     def _balance(self) -> dict[str, Any]:
         slots = [

@@ -80,6 +80,7 @@ class StepDrive:
         self.reason = ""
         self.markers: list[Marker] = []
         self.pages: DriveOnPages | None = None
+        self._opened: DriveOnPages | None = None
         self._thread = threading.Thread(target=self._start, daemon=True)
 
     def begin(self) -> None:
@@ -89,6 +90,7 @@ class StepDrive:
     def _start(self) -> None:
         try:
             pages = DriveOnPages(self.setup, self._record, self._options)
+            self._opened = pages
             pages.also(self._take, self._hear)
             pages.drive.start()
         except (ValueError, OSError, ModuleNotFoundError) as error:
@@ -146,7 +148,7 @@ class StepDrive:
         """Make the record whole and tell how it ended."""
         if self._thread is not threading.current_thread() and self._thread.ident:
             self._thread.join()
-        pages, kept = self.pages, list[Path]()
+        pages, kept = self._opened, list[Path]()
         facts: tuple[str, ...] = ()
         if pages is not None:
             pages.broadcast.send({"type": "farewell"})
