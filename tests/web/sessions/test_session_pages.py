@@ -116,8 +116,12 @@ def test_answers_sent_twice_are_kept_once(study: Study, open_page: OpenPage) -> 
     other.evaluate("document.querySelector('form')?.requestSubmit()")
     other.get_by_role("heading", name="Break").wait_for()
     assert len(answers(study)) == 3
-    said = [event["kind"] for event in study.desk.session.store.rows(
-        "SELECT kind FROM events WHERE step = 'ask-likert'")]
+    said = [
+        event["kind"]
+        for event in study.desk.session.store.rows(
+            "SELECT kind FROM events WHERE step = 'ask-likert'"
+        )
+    ]
     assert said == ["step finished"]
 
 

@@ -48,9 +48,8 @@ export class Panels {
     this.trials = panel("trials", "Drives");
     this.orders = panel("orders", "Balance of orders");
     this.log = panel("events", "Log");
-    byId("left").append(this.beginPanel(), this.people.element);
-    byId("right").append(this.checks.element, this.trials.element, this.orders.element,
-      this.log.element);
+    byId("left").append(this.beginPanel(), this.people.element, this.orders.element);
+    byId("right").append(this.checks.element, this.trials.element, this.log.element);
     this.makeCheck();
   }
 
@@ -146,27 +145,28 @@ export class Panels {
 
   trialRows(attempts) {
     if (attempts.length === 0) return [make("p", {}, "No drive yet.")];
-    const heads = ["drive", "SDLP m", "SWRR /min", "km/h", ""];
+    const heads = ["drive", "SDLP [m]", "SWRR [/min]", "speed [km/h]", ""];
     const head = make("tr", {}, ...heads.map((name) => make("th", { scope: "col" }, name)));
     const rows = attempts.toReversed().flatMap((one) => this.trialRow(one));
     return [make("table", {}, make("thead", {}, head), make("tbody", {}, ...rows))];
   }
 
   trialRow({ step, attempt, kind, condition, order, state, reason, excluded, measures }) {
-    const name = kind === "practise" ? `practice ${condition}` : `${order}. ${condition}`;
+    const name = kind === "practise" ? `practice, ${condition}` : `${order}. ${condition}`;
     const told = attempt > 1 ? `${name} (${attempt})` : name;
     const isWhole = state === "finished";
     const action = excluded ? "include" : "exclude";
-    const label = excluded ? "Include …" : "Exclude …";
+    const label = excluded ? "Include" : "Exclude";
     const press = button(label, `${action} ${step} ${attempt}`, () => askFirst({
-      title: `${action === "exclude" ? "Exclude" : "Include"} ${told}?`, yes: label.slice(0, -2),
+      title: `${action === "exclude" ? "Exclude" : "Include"} ${told}?`, yes: label,
       fields: [{ name: "reason", label: "Reason" }],
     }, (given) => this.act(action, { step, attempt, ...given })));
     const values = isWhole
       ? [number(measures.sdlp, 2), number(measures.swrr, 1), number(measures.mean_speed, 0, 3.6)]
-      : [state, "", ""];
+      : [state];
     const row = make("tr", { class: excluded ? "out" : "" },
       ...[told, ...values].map((text) => make("td", {}, text)),
+      ...(isWhole ? [] : [make("td", { colSpan: 2 })]),
       make("td", {}, ...(isWhole && kind === "drive" ? [press] : [])));
     if (!reason) return [row];
     return [row, make("tr", {}, make("td", { colSpan: 5, class: "why" }, reason))];
@@ -179,10 +179,11 @@ function number(value, digits, factor = 1) {
 
 function checkRows(checks) {
   if (checks.length === 0) return [make("p", {}, "Not checked yet.")];
-  return [make("ul", {}, ...checks.map(({ name, well, told }) => make("li", {},
-    make("b", { class: well ? "good" : "bad" }, well ? "✓" : "✗"),
-    make("span", {}, name, make("span", { class: "unseen" }, well ? " is well" : " is not well"),
-      make("small", {}, told)))))];
+  return [make("ul", {}, ...checks.map(({ name, well, told }) => make("li",
+    { class: well ? "" : "wrong", title: told },
+    make("b", { class: well ? "good" : "bad" }, well ? "✓" : "✗"), ` ${name}`,
+    make("span", { class: "unseen" }, well ? " is well" : " is not well"),
+    ...(well ? [] : [make("small", {}, told)]))))];
 }
 
 function orderRows({ places, even }) {

@@ -138,7 +138,7 @@ export class Signals {
     const axis = { stroke: colour("--dim"), grid: { stroke: colour("--grid"), width: 1 },
       ticks: { stroke: colour("--grid"), width: 1, size: 3 }, font: "12px system-ui, sans-serif" };
     return {
-      width: 300, height: 60, padding: [6, 16, 0, 0],
+      width: 300, height: 60, padding: [8, 16, n < CHARTS.length - 1 ? 8 : 0, 0],
       legend: { show: false },
       cursor: { sync: { key: "console" }, y: false, points: { size: 6 },
         drag: { x: true, y: false, setScale: false } },
