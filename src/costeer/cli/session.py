@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Annotated, NamedTuple
 import typer
 
 from costeer.cli.console import note, print_table
+from costeer.cli.session_trial import Rehearsal, power, rehearse_study
 
 if TYPE_CHECKING:
     from starlette.types import ASGIApp
@@ -28,7 +29,7 @@ def session(
     folder: Annotated[Path, typer.Argument(help="Folder of the study.")],
     plan: Annotated[
         Path | None,
-        typer.Option(help="With new: a plan of your own; else the paper's experiment."),
+        typer.Option(help="With new or power: a plan of your own."),
     ] = None,
     participant: Annotated[
         str | None, typer.Option(help="With withdraw: whose data are deleted.")
@@ -73,8 +74,14 @@ def session(
         float, typer.Option(help="With rehearse: of a trial [m].")
     ] = 600.0,
     seed: Annotated[
-        int, typer.Option(help="With rehearse: of answers and accidents.")
+        int, typer.Option(help="With rehearse and power: of all that is random.")
     ] = 1,
+    drivers: Annotated[
+        int, typer.Option(help="With power: virtual drivers that drive the plan.")
+    ] = 40,
+    intention: Annotated[
+        str, typer.Option(help="With power: network or scripted.")
+    ] = "network",
 ) -> None:
     """Run a study with people: plan, questionnaires, drives, data.
 
@@ -86,7 +93,7 @@ def session(
         costeer session run my-study
         costeer session status my-study
     """
-    rehearsal = _Rehearsal(participants, seed, accidents, haste, conditions, length)
+    rehearsal = Rehearsal(participants, seed, accidents, haste, conditions, length)
     acts = {
         "new": partial(_new, folder, plan),
         "run": partial(
@@ -94,7 +101,8 @@ def session(
         ),
         "status": partial(_status, folder),
         "withdraw": partial(_withdraw, folder, participant),
-        "rehearse": partial(_rehearse, folder, rehearsal),
+        "power": partial(power, folder, plan, drivers, seed, intention),
+        "rehearse": partial(rehearse_study, folder, rehearsal),
     }
     if action not in acts:
         known = ", ".join(acts)
@@ -133,53 +141,6 @@ def _new(folder: Path, plan: Path | None) -> None:
         f"costeer: {found.participants} participants, {told}; edit the plan, then run:"
     )
     note(f"costeer session run {folder}")
-
-
-class _Rehearsal(NamedTuple):
-    """What is rehearsed, in words."""
-
-    participants: int
-    seed: int
-    accidents: float
-    haste: float | None
-    conditions: str
-    length: float
-
-
-def _rehearse(folder: Path, said: _Rehearsal) -> None:
-    """Rehearse a study, print what came of it.
-
-    Raises:
-        typer.Exit: With 1 if something was lost.
-    """
-    from costeer.methods.conditions import parse_conditions
-    from costeer.sessions.rehearse import RehearsalSettings, rehearse
-
-    usual = RehearsalSettings()
-    settings = RehearsalSettings(
-        participants=said.participants,
-        seed=said.seed,
-        accidents=said.accidents,
-        haste=usual.haste if said.haste is None else said.haste,
-        length=said.length,
-        conditions=parse_conditions(said.conditions) if said.conditions else (),
-    )
-    found = rehearse(folder, settings, lambda text: note(f"costeer: {text}"))
-    killed = ", ".join(f"{what} {n}" for what, n in found.accidents.items())
-    print_table(
-        ["what", "found"],
-        [
-            ["participants who finished", str(found.participants)],
-            ["answers, of them lost", f"{found.answers}, {found.lost_answers}"],
-            ["finished drives, of them lost", f"{found.trials}, {found.lost_trials}"],
-            ["killed on the way", killed],
-            ["orders balanced", "yes" if found.even else "no"],
-            ["time", f"{found.seconds / 60.0:.1f} min"],
-        ],
-    )
-    lost = found.lost_answers + found.lost_trials
-    if lost or found.participants < said.participants:
-        raise typer.Exit(1)
 
 
 class _Lab(NamedTuple):

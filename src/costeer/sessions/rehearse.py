@@ -295,7 +295,8 @@ class _Robot:
                 on = f"{step.get('id')} {step.get('drive', {}).get('state')}"
                 if on != last:
                     last, moved = on, time.monotonic()
-                    if os.environ.get("REH"): print(f"{moved:9.1f} {on}", flush=True)
+                    if os.environ.get("REH"):
+                        print(f"{moved:9.1f} {on}", flush=True)
                 if step.get("kind") == "done":
                     self._note_finished()
                     break

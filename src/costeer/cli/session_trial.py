@@ -1,0 +1,110 @@
+"""`costeer session power` and `rehearse`: a study tried before anybody takes part."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import NamedTuple
+
+import typer
+
+from costeer.cli.console import note, print_table
+
+
+def _short(value: float) -> str:
+    return f"{value:.4g}"
+
+
+class Rehearsal(NamedTuple):
+    """What is rehearsed, in words."""
+
+    participants: int
+    seed: int
+    accidents: float
+    haste: float | None
+    conditions: str
+    length: float
+
+
+def power(
+    folder: Path, plan: Path | None, drivers: int, seed: int, intention: str
+) -> None:
+    """Say how many participants detect which effect, as virtual drivers predict it.
+
+    Raises:
+        ValueError: If there is no plan, or it cannot be.
+        OSError: If a file cannot be read or written.
+    """
+    from costeer.base.files import write_text
+    from costeer.cli.console import progress
+    from costeer.sessions.plan import PLAN_FILE, read_plan, session_steps
+    from costeer.sessions.power import PowerSettings, planned_power
+
+    found = read_plan(plan or folder / PLAN_FILE)
+    settings = PowerSettings(drivers=drivers, seed=seed, intention=intention)
+    total = drivers * sum(each.kind == "drive" for each in session_steps(found, 1))
+    with progress("trials", total) as advance:
+        powers = planned_power(found, settings, lambda done, of: advance(1))
+    planned = found.participants
+    rows, lines = [], ["measure,condition,d_z,low,high,participants,power,low,high"]
+    for each in powers:
+        at = min(range(len(each.sizes)), key=lambda k: abs(each.sizes[k] - planned))
+        shown = f"{each.power[at]:.2f} ({each.low[at]:.2f} to {each.high[at]:.2f})"
+        needed = f"over {each.sizes[-1]}" if each.needed is None else str(each.needed)
+        interval = f"({each.effect_low:.2f} to {each.effect_high:.2f})"
+        size = f"{each.effect:.2f} {interval}"
+        rows.append([each.measure, each.condition, size, shown, needed])
+        for k, n in enumerate(each.sizes):
+            numbers = (each.effect, each.effect_low, each.effect_high)
+            power = (each.power[k], each.low[k], each.high[k])
+            told = [
+                *(f"{v:.4g}" for v in numbers),
+                str(n),
+                *(f"{v:.4g}" for v in power),
+            ]
+            lines.append(",".join([each.measure, each.condition, *told]))
+    print_table(
+        ["measure", "against manual", "d_z", f"power at {planned}", "80 % needs"], rows
+    )
+    folder.mkdir(parents=True, exist_ok=True)
+    write_text(folder / "power.csv", "\n".join(lines) + "\n")
+    typer.echo(folder / "power.csv")
+    note(
+        f"costeer: a prediction by {drivers} virtual drivers, calibrated on manual "
+        "driving; brackets are 95 % intervals over these drivers. People may differ"
+    )
+
+
+def rehearse_study(folder: Path, said: Rehearsal) -> None:
+    """Rehearse a study, print what came of it.
+
+    Raises:
+        typer.Exit: With 1 if something was lost.
+    """
+    from costeer.methods.conditions import parse_conditions
+    from costeer.sessions.rehearse import RehearsalSettings, rehearse
+
+    usual = RehearsalSettings()
+    settings = RehearsalSettings(
+        participants=said.participants,
+        seed=said.seed,
+        accidents=said.accidents,
+        haste=usual.haste if said.haste is None else said.haste,
+        length=said.length,
+        conditions=parse_conditions(said.conditions) if said.conditions else (),
+    )
+    found = rehearse(folder, settings, lambda text: note(f"costeer: {text}"))
+    killed = ", ".join(f"{what} {n}" for what, n in found.accidents.items())
+    print_table(
+        ["what", "found"],
+        [
+            ["participants who finished", str(found.participants)],
+            ["answers, of them lost", f"{found.answers}, {found.lost_answers}"],
+            ["finished drives, of them lost", f"{found.trials}, {found.lost_trials}"],
+            ["killed on the way", killed],
+            ["orders balanced", "yes" if found.even else "no"],
+            ["time", f"{found.seconds / 60.0:.1f} min"],
+        ],
+    )
+    lost = found.lost_answers + found.lost_trials
+    if lost or found.participants < said.participants:
+        raise typer.Exit(1)
