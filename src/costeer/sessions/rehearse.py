@@ -288,33 +288,36 @@ class _Robot:
         self._sit_down()
         moved, last = time.monotonic(), ""
         next_accident = self._until_accident()
-        while True:
-            try:
-                state = self.server.ask("/api/session")
-                step = state["step"] or {}
-                on = f"{step.get('id')} {step.get('drive', {}).get('state')}"
-                if on != last:
-                    last, moved = on, time.monotonic()
-                    if os.environ.get("REH"):
-                        print(f"{moved:9.1f} {on}", flush=True)
-                if step.get("kind") == "done":
-                    self._note_finished()
-                    break
-                self._do(state, step)
-            except (OSError, ValueError) as error:
-                if not self.server.is_alive:
-                    self._sit_down()
-                elif isinstance(error, ValueError):
-                    raise
-            except self._errors as error:  # the browser was killed under the hand
-                self._told(f"{who}: browser: {str(error).splitlines()[0]}")
-                self._open_page()
+        while (on := self._went_on()) != "done":
+            if on and on != last:
+                last, moved = on, time.monotonic()
             if time.monotonic() - moved > _PATIENCE:
                 raise ValueError(f"{who} stands at {last} for {_PATIENCE:g} s")
             if time.monotonic() > next_accident:
                 self._accident()
                 next_accident = self._until_accident()
+        self._note_finished()
         self._told(f"{who}: done; {sum(self.accidents.values())} accidents so far")
+
+    def _went_on(self) -> str:
+        """Do what comes next, whatever was killed; return where the session stands."""
+        try:
+            state = self.server.ask("/api/session")
+            step = state["step"] or {}
+            if step.get("kind") == "done":
+                return "done"
+            self._do(state, step)
+        except (OSError, ValueError) as error:
+            if not self.server.is_alive:
+                self._sit_down()
+            elif isinstance(error, ValueError):
+                raise
+            return ""
+        except self._errors as error:  # the browser was killed under the hand
+            self._told(f"{self._who}: browser: {str(error).splitlines()[0]}")
+            self._open_page()
+            return ""
+        return f"{step.get('id')} {step.get('drive', {}).get('state')}"
 
     @property
     def _errors(self) -> type[Exception]:
