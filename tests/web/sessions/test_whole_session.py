@@ -117,7 +117,7 @@ def test_session_of_two_drives_leaves_records_answers_and_measures(
         fill(page)
         page.get_by_role("heading", name="Drive 1 of 2").wait_for()
         drive(page, console)
-        page.get_by_role("heading", name="Workload").wait_for()
+        page.get_by_role("heading", name="Workload", exact=True).wait_for()
         keep_picture(page, "questions")
         fill(page)
         page.get_by_role("heading", name="Drive 2 of 2").wait_for()
