@@ -174,7 +174,7 @@ class Console:
             raise ValueError("a drive is on; stop it first")
 
     def _command(self, *command: object) -> None:
-        if self._desk.drive is None:
+        if self._desk.drive is None or not self._desk.present().step.drives:
             raise ValueError("nobody drives in this step")
         self._desk.drive.ask(*map(str, command))
 
@@ -198,9 +198,12 @@ class Console:
     def skip(self, step: str, reason: str) -> None:
         """Leave the step out."""
         standing = self._desk.present()
-        self._refuse_while_driving()
+        is_driven = standing.step.drives
+        if is_driven:
+            self._refuse_while_driving()
         self._session.skip(standing.participant, str(step), str(reason))
-        self._desk.leave_drive("the step was skipped")
+        if is_driven:  # else the drive that is ready is for a later step
+            self._desk.leave_drive("the step was skipped")
 
     def repeat(self, step: str, reason: str) -> None:
         """Have a step done again."""
