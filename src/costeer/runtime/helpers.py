@@ -10,7 +10,7 @@ import signal
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from multiprocessing.context import SpawnContext
+from multiprocessing.context import BaseContext
 from multiprocessing.process import BaseProcess
 
 from costeer.devices.head.process import run_head_process
@@ -85,9 +85,7 @@ class Helpers:
         shared: Memory of the drive.
     """
 
-    def __init__(
-        self, context: SpawnContext, setup: DriveSetup, shared: Shared
-    ) -> None:
+    def __init__(self, context: BaseContext, setup: DriveSetup, shared: Shared) -> None:
         self._context = context
         self._setup = setup
         self._shared = shared
@@ -166,10 +164,13 @@ class Helpers:
 
 
 def spawned(
-    context: SpawnContext, target: Callable[..., None], *given: object
+    context: BaseContext, target: Callable[..., None], *given: object
 ) -> BaseProcess:
     """A process that was started, and that no Ctrl-C reaches."""
-    process = context.Process(target=target, args=given, daemon=True)
+    # mypy knows the class of each context's processes, not that all have one.
+    process: BaseProcess = getattr(context, "Process")(  # noqa: B009
+        target=target, args=given, daemon=True
+    )
     with _without_interrupt():
         process.start()
     return process

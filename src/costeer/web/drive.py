@@ -7,6 +7,7 @@ import time
 from collections import deque
 from collections.abc import Callable
 from contextlib import suppress
+from multiprocessing.context import BaseContext
 from pathlib import Path
 from typing import NamedTuple
 
@@ -80,13 +81,18 @@ class DriveOnPages:
         setup: Of the drive.
         record: File to write, or None.
         options: What pages show.
+        context: That starts processes; one that spawns them if None.
 
     Raises:
         ValueError: If the drive cannot begin.
     """
 
     def __init__(
-        self, setup: DriveSetup, record: Path | None, options: PageOptions
+        self,
+        setup: DriveSetup,
+        record: Path | None,
+        options: PageOptions,
+        context: BaseContext | None = None,
     ) -> None:
         self.broadcast = Broadcast()
         self.latencies: deque[float] = deque(maxlen=KEPT_LATENCIES)
@@ -98,7 +104,8 @@ class DriveOnPages:
         self._every = round(setup.haste)
         self._chosen = first_choice(setup)
         self.columns = frame_columns(drive_columns(setup))
-        self.drive = Drive(setup, record, Listener(self._tell, self._mark))
+        listener = Listener(self._tell, self._mark)
+        self.drive = Drive(setup, record, listener, context)
         self._stands = (RunState.WAITING.value, Fault.NONE.value)
 
     def also(

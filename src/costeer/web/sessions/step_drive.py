@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import multiprocessing
 import threading
 import time
 from collections.abc import Callable
 from contextlib import suppress
+from functools import cache
+from multiprocessing.context import BaseContext
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -36,6 +39,26 @@ _STATES = {
     int(RunState.PAUSED): PAUSED,
     int(RunState.ENDED): SAVING,
 }
+
+
+@cache
+def warm_context() -> BaseContext:
+    """What starts the processes of drives: quickly, where the system lets it.
+
+    A small server that has imported everything forks them; without it each drive of a
+    session would import all anew, which takes seconds.
+    """
+    if "forkserver" not in multiprocessing.get_all_start_methods():
+        return multiprocessing.get_context("spawn")
+    context = multiprocessing.get_context("forkserver")
+    context.set_forkserver_preload(
+        [
+            "costeer.runtime.process",
+            "costeer.runtime.verdicts",
+            "costeer.runtime.watchdog",
+        ]
+    )
+    return context
 
 
 class Outcome(NamedTuple):
@@ -89,7 +112,9 @@ class StepDrive:
 
     def _start(self) -> None:
         try:
-            pages = DriveOnPages(self.setup, self._record, self._options)
+            pages = DriveOnPages(
+                self.setup, self._record, self._options, warm_context()
+            )
             self._opened = pages
             pages.also(self._take, self._hear)
             pages.drive.start()
