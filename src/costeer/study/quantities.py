@@ -96,6 +96,19 @@ WORKLOAD: tuple[Quantity, ...] = (
 )
 """Asked of people after every trial; virtual drivers leave these cells empty."""
 
+WORKLOAD_ITEMS: tuple[Quantity, ...] = tuple(
+    Quantity(name, "answers", title, title, "0–100", digits=1)
+    for name, title in (
+        ("mental_demand", "Mental demand"),
+        ("physical_demand", "Physical demand"),
+        ("temporal_demand", "Temporal demand"),
+        ("performance", "Performance"),
+        ("effort", "Effort"),
+        ("frustration", "Frustration"),
+    )
+)
+"""The six items of the NASA-TLX; of `performance` too more is load, Perfect to Failure."""
+
 BY_STRENGTH = ("sdlp", "swrr")
 """Measures of lane keeping, which the paper also compares by strength alone."""
 
