@@ -1,4 +1,4 @@
-"""What happened in a session, in order: the store's events, pauses, clocks that jump."""
+"""What happened in a session: the store's events, pauses, clocks that jump."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Sentences of the methods that only a session knows: who, in which order, with what."""
+"""Sentences of the methods that only a session knows: who, in which order, how."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ def _values(answered: Sequence[Answered], item: str) -> list[Any]:
 def _people(answered: Sequence[Answered]) -> str:
     ages = [float(each) for each in _values(answered, "age")]
     genders = Counter(str(each) for each in _values(answered, "gender"))
-    parts = [f"{n} {name.replace('_', ' ')}" for name, n in sorted(genders.items())]
+    parts = [_gender(name, n) for name, n in sorted(genders.items())]
     told = f"Gender: {listed(parts)}. " if parts else ""
     if len(ages) == 1:
         told += f"Age: {number(ages[0], 0)} years."
@@ -73,13 +73,17 @@ def _people(answered: Sequence[Answered]) -> str:
     return told.strip()
 
 
+def _gender(name: str, number: int) -> str:
+    many = {"woman": "women", "man": "men"}.get(name, name)
+    return f"{number} {(many if number > 1 else name).replace('_', ' ')}"
+
+
 def _order(session: Session) -> str:
     block = next((each for each in session.plan.steps if each.kind == "trials"), None)
     if block is None:
         return ""
-    return (
-        f"{plural(len(block.conditions), 'condition')} came in {_ORDERS[block.order]}."
-    )
+    number_of = len(block.conditions)
+    return f"The {number_of} conditions of the block came in {_ORDERS[block.order]}."
 
 
 def _practice(attempts: Sequence[Row]) -> str:

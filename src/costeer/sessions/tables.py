@@ -88,10 +88,10 @@ def write_table(out: Path, file: str, rows: Sequence[Cells]) -> None:
 
 def participant_rows(session: Session, people: People) -> list[Cells]:
     """Rows of `participants.csv`."""
-    hashes = dict(
-        (row["version"], row["hash"])
+    hashes = {
+        row["version"]: row["hash"]
         for row in session.store.rows("SELECT version, hash FROM plans")
-    )
+    }
     ends = {
         row["participant"]: row["utc"]
         for row in session.store.rows("SELECT * FROM events WHERE kind = 'finished'")

@@ -14,7 +14,7 @@ from costeer.study.quantities import CONFIDENCE, QUANTITIES
 
 
 class AgreementRow(NamedTuple):
-    """A row of `agreement.csv`: a measure in a condition, of people and virtual drivers.
+    """A row of `agreement.csv`: people and virtual drivers in a measure and condition.
 
     Attributes:
         measure: As in `trials.csv` or `lane_changes.csv`.

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import Any
 
@@ -129,7 +129,7 @@ def _configuration(drives: Iterable[Drive], about: list[_Metadata]) -> dict[str,
         "participants": len({each.participant for each in drives}),
         "conditions": [name for name in CONDITION_NAMES if name in names],
     }
-    read = {
+    read: dict[str, Callable[[_Metadata], object]] = {
         "method": lambda m: m.get("method") if m.get("condition") != "manual" else None,
         "car": lambda m: m.get("car"),
         "speed": lambda m: m.get("speed"),

@@ -55,10 +55,10 @@ def draw(material: StudyMaterial) -> list[Exhibit]:
 
 
 _CAPTION = (
-    "Means over participants' own means with 95 % intervals: filled circles are people, "
-    "open squares virtual drivers. Grey: 95 % prediction interval of the virtual "
-    "drivers for the mean of as many others as there are people. r: correlation of both "
-    "means over the conditions."
+    "Means over participants' own means with 95 % intervals: filled circles are "
+    "people, open squares virtual drivers. Grey: 95 % prediction interval of the "
+    "virtual drivers for the mean of as many others as there are people. r: "
+    "correlation of both means over the conditions."
 )
 _DESCRIPTION = (
     "A panel for each measure; in each condition the mean of people beside that of "

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.ticker import MaxNLocator
 
 from costeer.methods.conditions import MANUAL, STRENGTHS
 from costeer.pages.exhibit import Exhibit, not_drawn
@@ -79,20 +80,21 @@ def _caption(found: Sequence[Dispute]) -> str:
 
 def _per_change(axes: Axes, material: StudyMaterial) -> None:
     names = [name for name in conditions_driven(material) if name != MANUAL]
-    changes = material.lane_changes
+    changes, reach = material.lane_changes, 0.0
     for place, name in enumerate(names):
         own = changes[changes["condition"] == name].groupby("participant")
         values = own["num_inconsistencies"].mean().dropna().to_numpy(np.float64)
         if not values.size:
             continue
         mean, half = float(values.mean()), half_width(values)
+        reach = max(reach, mean, np.nan_to_num(mean + half))
         axes.barh(place, mean, height=0.74, color=condition_colour(name))
         if np.isfinite(half):
             interval_bar(axes, (mean, place), False, min(half, mean), half)
     axes.set_yticks(range(len(names)))
     axes.set_yticklabels(names)
     axes.invert_yaxis()
-    axes.set_xlim(left=0.0)
+    axes.set_xlim(0.0, 1.08 * reach if reach > 0.0 else 1.0)
     axes.set_xlabel("Per lane change [–]")
 
 
@@ -116,4 +118,4 @@ def _histogram(
         label=list(values),
         rwidth=0.92,
     )
-    axes.yaxis.get_major_locator().set_params(integer=True)
+    axes.yaxis.set_major_locator(MaxNLocator(integer=True))

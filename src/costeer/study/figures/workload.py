@@ -51,11 +51,11 @@ def draw(material: StudyMaterial) -> list[Exhibit]:
 
 def _items(tests: StudyTests) -> Exhibit:
     """Draw each item by condition: Fig. 21."""
-    figure = new_figure(FULL_WIDTH_MM, 104.0)
+    figure = new_figure(FULL_WIDTH_MM, 140.0)
     margins = Margins(
-        left=12.0, top=7.0, bottom=13.0, between_columns=9.0, between_rows=14.0
+        left=14.0, top=11.0, bottom=10.0, between_columns=14.0, between_rows=19.0
     )
-    grid = panels(figure, 2, 3, margins)
+    grid = panels(figure, 3, 2, margins)
     places = [axes for row in grid for axes in row]
     for axes, item in zip(places, WORKLOAD_ITEMS, strict=True):
         _panel(axes, item, tests)
@@ -65,14 +65,15 @@ def _items(tests: StudyTests) -> Exhibit:
 
 
 _CAPTION = (
-    "Means over participants with 95 % intervals, cut at the ends of the scale; more is "
-    "load in every item, also of performance (perfect to failure). Above: Wilcoxon's "
-    "signed-rank test against manual, Benjamini-Hochberg corrected: * p < 0.05, "
+    "Means over participants with 95 % intervals, cut at the ends of the scale; more "
+    "is load in every item, also of performance (perfect to failure). Above: "
+    "Wilcoxon's signed-rank test against manual, Benjamini-Hochberg corrected: "
+    "* p < 0.05, "
     "** p < 0.01, *** p < 0.001, n.s. not significant, – not tested."
 )
 _DESCRIPTION = (
-    "Six bar charts, one for each item of the NASA-TLX, by condition; the numbers stand "
-    "in the table of answers."
+    "Six bar charts, one for each item of the NASA-TLX, by condition; the numbers "
+    "stand in the table of answers."
 )
 
 
@@ -99,7 +100,7 @@ def _panel(axes: Axes, item: Quantity, tests: StudyTests) -> None:
     axes.set_xlim(-0.6, len(rows) - 0.4)
     axes.set_xticks(range(len(rows)))
     axes.set_xticklabels([_label(row.level) for row in rows], size=SMALL)
-    axes.set_title(item.title, pad=11.0)
+    axes.set_title(item.title, pad=13.0)
 
 
 def _interval(axes: Axes, place: int, row: SummaryRow) -> None:

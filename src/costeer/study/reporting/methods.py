@@ -36,8 +36,8 @@ def _who(material: StudyMaterial) -> str:
     amount = int(material.trials["participant"].nunique())
     if is_virtual(material):
         return (
-            f"{plural(amount, 'virtual driver')} took part, calibrated on manual driving "
-            "only; no person drove."
+            f"{plural(amount, 'virtual driver')} took part, calibrated on manual "
+            "driving only; no person drove."
         )
     drove = plural(amount, "participant")
     return f"{drove} drove at least one trial that was analysed."
@@ -48,14 +48,14 @@ def _design(material: StudyMaterial) -> list[str]:
     configuration = material.study.configuration
     told = [
         f"Conditions within subjects were {listed(names)}; strength is the factor on "
-        "the haptic gain (strong 1, weak 0.4), and rapid, normal and gentle are planned "
-        "lane changes of 4, 6 and 8 s."
+        "the haptic gain (strong 1, weak 0.4), and rapid, normal and gentle are "
+        "planned lane changes of 4, 6 and 8 s."
     ]
     length, speed = configuration.get("length"), configuration.get("speed")
     if isinstance(length, int | float) and isinstance(speed, int | float):
         told.append(
-            f"Each trial was a course of {number(length / 1000.0, 1)} km at a suggested "
-            f"{number(speed * 3.6, 0)} km/h."
+            f"Each trial was a course of {number(length / 1000.0, 1)} km at a "
+            f"suggested {number(speed * 3.6, 0)} km/h."
         )
     changed = differences(configuration)
     if changed:
@@ -163,8 +163,8 @@ def _measures() -> list[str]:
 def _tests(material: StudyMaterial) -> list[str]:
     told = [
         "Measures were averaged for each participant and condition and tested by "
-        "repeated-measures analyses of variance with the Greenhouse-Geisser correction, "
-        "by mixed models with participant as random effect where cells were missing, "
+        "repeated-measures analyses of variance with Greenhouse-Geisser correction, by "
+        " mixed models with participant as random effect where cells were missing, "
         "and by paired t tests against manual driving with the Benjamini-Hochberg "
         "correction over the comparisons of a measure; the level was 0.05."
     ]

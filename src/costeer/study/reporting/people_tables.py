@@ -146,11 +146,11 @@ def agreement_table(material: StudyMaterial, virtual: StudyMaterial) -> Table:
     return Table(
         name="agreement",
         title="People beside virtual drivers",
-        note="Means over participants' own means with 95 % intervals; difference: people "
-        "less virtual drivers (Welch). Within: whether the mean of people lies in the "
-        "95 % prediction interval of the virtual drivers for the mean of as many others. "
-        "Marks: against manual, within subjects, of each group by itself. r: correlation "
-        "of both means over the conditions. Also in agreement.csv.",
+        note="Means over participants' own means with 95 % intervals; difference: "
+        "people less virtual drivers (Welch). Within: whether the mean of people lies "
+        "in the 95 % prediction interval of the virtual drivers for the mean of as "
+        "many others. Marks: against manual, within subjects, of each group by itself. "
+        "r: correlation of both means over the conditions. Also in agreement.csv.",
         header=(
             "Measure",
             "Condition",
@@ -159,8 +159,8 @@ def agreement_table(material: StudyMaterial, virtual: StudyMaterial) -> Table:
             "Difference",
             "Prediction",
             "Within",
-            "People",
-            "Virtual",
+            "Mark, people",
+            "Mark, virtual",
             "r",
         ),
         rows=tuple(cells),
@@ -205,8 +205,8 @@ def agreement_sentence(material: StudyMaterial, virtual: StudyMaterial) -> str:
     ]
     where = f" Outside at least once: {', '.join(missed)}." if missed else ""
     return (
-        f"{inside} of {len(judged)} means of people lie in the 95 % prediction interval "
-        f"of the virtual drivers; of a correct prediction, 95 % would.{where}"
+        f"{inside} of {len(judged)} means of people lie in the 95 % prediction "
+        f"interval of the virtual drivers; of a correct prediction, 95 % would.{where}"
     )
 
 
@@ -219,7 +219,7 @@ def exclusions_table(people: People) -> Table | None:
             each.attempt or NOTHING,
             each.state,
             each.reason or NOTHING,
-            each.utc or NOTHING,
+            each.utc[:19].replace("T", " ") or NOTHING,
         )
         for each in people.exclusions
     )
