@@ -57,7 +57,7 @@ def made_up_session(
     """
     folder.mkdir(parents=True)
     plan = PLAN.format(
-        people=len(people), length=LENGTH, conditions=", ".join(conditions[1:])
+        people=max(len(people), 1), length=LENGTH, conditions=", ".join(conditions[1:])
     )
     (folder / "plan.yaml").write_text(plan)
     session = Session(folder)

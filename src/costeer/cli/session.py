@@ -256,8 +256,8 @@ def _export(folder: Path, to: str, out: Path | None) -> None:
     people = export_session(folder, to, out)
     typer.echo(out)
     note(
-        f"costeer: {len(people.drives)} trials; {len(people.exclusions)} excluded or "
-        "missing, see exclusions.csv"
+        f"costeer: {len(people.drives)} trials; {len(people.exclusions)} are excluded "
+        "or missing, --format csv says why"
     )
 
 

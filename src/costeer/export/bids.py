@@ -204,13 +204,16 @@ _EVENTS = {
 }
 
 
+_TYPES = ("ACCEL", "ANGACCEL", "GYRO", "JNTANG", "LATENCY", "MAGN", "MISC")
+_TYPES += ("ORNT", "POS", "VEL")
+"""Types of channels that BIDS knows of motion, used here or not."""
+
+
 def _sidecar(
     trial: BidsTrial, record: TrialRecord, columns: Sequence[Column]
 ) -> dict[str, object]:
     kinds = [_channel(column)["type"] for column in columns]
-    counts = {
-        name: kinds.count(name) for name in ("POS", "VEL", "ACCEL", "ORNT", "MISC")
-    }
+    counts = {f"{name}ChannelCount": kinds.count(name) for name in _TYPES}
     rows = next(iter(record.columns.values())).size
     about = record.metadata
     return {
@@ -225,7 +228,7 @@ def _sidecar(
         "RecordingDuration": round(rows / RATE, 3),
         "MotionChannelCount": len(columns),
         "TrackedPointsCount": 2,
-        **{f"{name}ChannelCount": n for name, n in counts.items() if n},
+        **counts,
         "SpatialAxes": "FLU",
         "RotationRule": "right-hand",
         "RotationOrder": "ZYX",

@@ -46,7 +46,7 @@ def write_session(folder: Path, out: Path) -> People:
 
     Args:
         folder: Of the session.
-        out: To write in.
+        out: To write in; made if it is not there.
 
     Returns:
         Who drove, for `write_people_tables` and the report.
@@ -56,6 +56,7 @@ def write_session(folder: Path, out: Path) -> People:
         OSError: If a file cannot be read or written.
     """
     session = Session(folder)
+    out.mkdir(parents=True, exist_ok=True)
     try:
         answered = answers_in(session)
         people = people_in(session, answered)

@@ -56,12 +56,12 @@ def disputes(material: StudyMaterial) -> list[Dispute]:
         begun = find_inconsistencies(read_record(path, _READ).columns)
         own = by_trial.get((who, name))
         for each in () if isinstance(begun, str) else begun:
-            where = _where(each.start_time, own)
+            where = in_lane_change(each.start_time, own)
             found.append(Dispute(who, name, each.start_time, *where))
     return found
 
 
-def _where(start: float, changes: pd.DataFrame | None) -> tuple[float, float]:
+def in_lane_change(start: float, changes: pd.DataFrame | None) -> tuple[float, float]:
     """Time from the nearest crossing [s], and share of the lane change it is in."""
     if changes is None:
         return math.nan, math.nan
