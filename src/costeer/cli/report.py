@@ -48,10 +48,9 @@ def report(
     if people is None:
         _tell_missing(trials_without_record(folder))
     elif people.exclusions:
-        note(
-            f"costeer: {len(people.exclusions)} drives are excluded or missing; "
-            "exclusions.csv says why"
-        )
+        amount = len(people.exclusions)
+        drives = "1 drive is" if amount == 1 else f"{amount} drives are"
+        note(f"costeer: {drives} excluded or missing; exclusions.csv says why")
     typer.echo(page)
 
 
