@@ -183,6 +183,10 @@ _DOCUMENTED = {
     "pairs.csv": PairRow,
     "summaries.csv": SummaryRow,
     "dropped.csv": DroppedRow,
+    "answers_tests.csv": EffectRow,
+    "answers_pairs.csv": PairRow,
+    "answers_summaries.csv": SummaryRow,
+    "answers_dropped.csv": DroppedRow,
     "agreement.csv": AgreementRow,
     EXCLUSIONS_FILE: Exclusion,
 }

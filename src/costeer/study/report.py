@@ -23,6 +23,9 @@ from costeer.study.people import People
 from costeer.study.reporting.page import render
 from costeer.study.trial_tables import write_csv
 
+ANSWERS = "answers_"
+"""How the names of tables begin that hold tests of the items of the NASA-TLX."""
+
 AGREEMENT_FILE = "agreement.csv"
 FIGURES = "figures"
 REPORT_FILE = "report.html"
@@ -79,10 +82,8 @@ def write_report(
         material = material._replace(beside=read_virtual(beside))
     _write_statistics(path, material.tests)
     if material.answers is not None:
-        _write_statistics(path, material.answers, "answers_")
-    if material.beside is not None:
-        rows = [each._asdict() for each in agreement(material, material.beside)]
-        write_csv(path / AGREEMENT_FILE, rows, AgreementRow._fields)
+        _write_statistics(path, material.answers, ANSWERS)
+    _write_agreement(path / AGREEMENT_FILE, material)
     pictures = _write_figures(path / FIGURES, material, tell)
     tell("report")
     write_text(path / REPORT_FILE, render(material, pictures))
@@ -97,6 +98,15 @@ def _write_statistics(folder: Path, tests: StudyTests, prefix: str = "") -> None
     for file in STATISTICS_FILES:
         rows = [row._asdict() for row in getattr(tests, file.rows)]
         write_csv(folder / f"{prefix}{file.name}", rows, file.columns)
+
+
+def _write_agreement(file: Path, material: StudyMaterial) -> None:
+    """Write how virtual drivers agree; remove what an earlier report has left."""
+    if material.beside is None:
+        file.unlink(missing_ok=True)
+        return
+    rows = [each._asdict() for each in agreement(material, material.beside)]
+    write_csv(file, rows, AgreementRow._fields)
 
 
 def _write_figures(
