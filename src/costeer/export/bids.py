@@ -204,8 +204,18 @@ _EVENTS = {
 }
 
 
-_TYPES = ("ACCEL", "ANGACCEL", "GYRO", "JNTANG", "LATENCY", "MAGN", "MISC")
-_TYPES += ("ORNT", "POS", "VEL")
+_TYPES = [
+    "ACCEL",
+    "ANGACCEL",
+    "GYRO",
+    "JNTANG",
+    "LATENCY",
+    "MAGN",
+    "MISC",
+    "ORNT",
+    "POS",
+    "VEL",
+]
 """Types of channels that BIDS knows of motion, used here or not."""
 
 

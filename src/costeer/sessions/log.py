@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from datetime import datetime, timedelta
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
@@ -14,7 +13,7 @@ from costeer.records.record import read_record
 from costeer.runtime.markers import Marker, told
 from costeer.sessions.attempts import listed_attempts
 from costeer.sessions.session import Session
-from costeer.sessions.store import Row
+from costeer.sessions.store import Row, seconds_of, utc_of
 
 SMALLEST_JUMP = 1.0
 """By which the two clocks must disagree between two events [s]. Source: assumed, far
@@ -44,7 +43,7 @@ def _of_store(event: Row) -> dict[str, Any]:
 def clock_jumps(events: Sequence[Row]) -> Iterator[dict[str, Any]]:
     """Where wall clock and monotonic clock disagree from one event to the next."""
     for before, after in pairwise(events):
-        wall = (_moment(after["utc"]) - _moment(before["utc"])).total_seconds()
+        wall = seconds_of(after["utc"]) - seconds_of(before["utc"])
         steady = after["monotonic"] - before["monotonic"]
         if steady < 0.0:
             yield _clock_row(
@@ -111,13 +110,8 @@ def _marker_row(attempt: Row, marker: Marker, utc: str) -> dict[str, Any]:
     }
 
 
-def _moment(utc: str) -> datetime:
-    return datetime.fromisoformat(utc.replace("Z", "+00:00"))
-
-
 def _later(utc: str, seconds: float) -> str:
     """A moment so many seconds later; empty if it is not known."""
     if not utc or not math.isfinite(seconds):
         return ""
-    moment = _moment(utc) + timedelta(seconds=seconds)
-    return moment.isoformat(timespec="milliseconds").replace("+00:00", "Z")
+    return utc_of(seconds_of(utc) + seconds)
