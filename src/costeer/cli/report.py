@@ -3,32 +3,73 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from costeer.cli.console import note, progress
 
+if TYPE_CHECKING:
+    from costeer.study.people import People
+
 
 def report(
-    folder: Annotated[Path, typer.Argument(help="Folder of the study.")],
+    folder: Annotated[
+        Path,
+        typer.Argument(help="Folder of a study, of a session, or of drive records."),
+    ],
+    beside: Annotated[
+        Path | None,
+        typer.Option(help="Folder of a study with virtual drivers to compare with."),
+    ] = None,
 ) -> None:
     """Write tables, tests, figures and report.html of a study again.
 
     The records stay as they are; nothing is simulated. Works for virtual drivers and
-    for people, and for a study that is not finished. The tables trials.csv and
-    lane_changes.csv of a study with people are not touched: they hold answers.
+    for people, and for a study that is not finished: the folder of costeer study, of
+    costeer session, or one with records of drives whose participants are pseudonyms.
+    The tables trials.csv and lane_changes.csv of a study with people that has a
+    study.yaml are not touched: they hold answers.
 
     Example:
         costeer report out/study
+        costeer report my-study --beside out/study
     """
     from costeer.study.again import remake_report, trials_without_record
+    from costeer.study.folder import STUDY_FILE
     from costeer.study.report import NUM_STEPS
 
+    if beside is not None and not (beside / STUDY_FILE).is_file():
+        raise ValueError(f"--beside is {beside}, which has no {STUDY_FILE}")
+    is_study = (folder / STUDY_FILE).is_file()
+    people = None if is_study else _people(folder)
     with progress("report", NUM_STEPS) as advance:
-        page = remake_report(folder, lambda _: advance(1))
-    _tell_missing(trials_without_record(folder))
+        page = remake_report(folder, lambda _: advance(1), people, beside)
+    if people is None:
+        _tell_missing(trials_without_record(folder))
+    elif people.exclusions:
+        amount = len(people.exclusions)
+        drives = "1 drive is" if amount == 1 else f"{amount} drives are"
+        note(f"costeer: {drives} excluded or missing; exclusions.csv says why")
     typer.echo(page)
+
+
+def _people(folder: Path) -> People:
+    """Who drove, of a session or of a plain folder of records.
+
+    Raises:
+        ValueError: If it is neither, or what it holds cannot be.
+        OSError: If it cannot be read.
+    """
+    from costeer.sessions.store import STORE_FILE
+
+    if (folder / STORE_FILE).is_file():
+        from costeer.sessions.tables import write_session
+
+        return write_session(folder, folder)
+    from costeer.study.plain_folder import people_of_records
+
+    return people_of_records(folder)
 
 
 def _tell_missing(records: list[str]) -> None:

@@ -53,6 +53,12 @@ def session(
         bool,
         typer.Option("--browser/--no-browser", help="With run: open the console."),
     ] = True,
+    to: Annotated[
+        str, typer.Option("--format", help="With export: csv, bids, matlab, mcap, all.")
+    ] = "csv",
+    out: Annotated[
+        Path | None, typer.Option(help="With export: a new folder to write into.")
+    ] = None,
     haste: Annotated[
         float | None,
         typer.Option(
@@ -92,6 +98,7 @@ def session(
         costeer session new my-study
         costeer session run my-study
         costeer session status my-study
+        costeer session export my-study --format bids --out shared
     """
     rehearsal = Rehearsal(participants, seed, accidents, haste, conditions, length)
     acts = {
@@ -100,6 +107,7 @@ def session(
             _run, folder, _Lab(wheel, head, haste or 1.0), (host, port), browser
         ),
         "status": partial(_status, folder),
+        "export": partial(_export, folder, to, out),
         "withdraw": partial(_withdraw, folder, participant),
         "power": partial(power, folder, plan, drivers, seed, intention),
         "rehearse": partial(rehearse_study, folder, rehearsal),
@@ -260,6 +268,25 @@ def _status(folder: Path) -> None:
     session.close()
     if gone:
         note(f"costeer: {gone} withdrew; nothing of them is left")
+
+
+def _export(folder: Path, to: str, out: Path | None) -> None:
+    """Write the data for other programs.
+
+    Raises:
+        ValueError: If it cannot be, or there is no folder to write into.
+        OSError: If a file cannot be read or written.
+    """
+    from costeer.sessions.export import export_session
+
+    if out is None:
+        raise ValueError("where to? give --out and a new folder")
+    people = export_session(folder, to, out)
+    typer.echo(out)
+    note(
+        f"costeer: {len(people.drives)} trials; {len(people.exclusions)} are excluded "
+        "or missing, --format csv says why"
+    )
 
 
 def _withdraw(folder: Path, participant: str | None) -> None:

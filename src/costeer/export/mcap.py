@@ -232,18 +232,18 @@ def _plain(values: NDArray[Any], kind: str) -> list[Any]:  # Any: as above
 def _json(metadata: Mapping[str, object]) -> str:
     """The description of the trial as JSON, which has no NaN."""
     return json.dumps(
-        _finite(metadata), sort_keys=True, ensure_ascii=False, allow_nan=False
+        finite(metadata), sort_keys=True, ensure_ascii=False, allow_nan=False
     )
 
 
-def _finite(value: object) -> object:
+def finite(value: object) -> object:
     """The value with null where a number is not finite."""
     if isinstance(value, np.generic):
-        return _finite(value.item())
+        return finite(value.item())
     if isinstance(value, float):
         return value if math.isfinite(value) else None
     if isinstance(value, Mapping):
-        return {str(key): _finite(item) for key, item in value.items()}
+        return {str(key): finite(item) for key, item in value.items()}
     if isinstance(value, list | tuple):
-        return [_finite(item) for item in value]
+        return [finite(item) for item in value]
     return value

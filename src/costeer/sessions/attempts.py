@@ -10,7 +10,7 @@ from typing import Any
 
 from costeer.sessions.plan import Step
 from costeer.sessions.session import WHOLE, Session, told_reason
-from costeer.sessions.store import Row, now
+from costeer.sessions.store import Row, Store, now
 
 # Any, in this file: facts and measures.
 RUNNING, ABORTED = "running", "aborted"
@@ -197,14 +197,21 @@ class Attempts:
 
     def listed(self, participant: str = "") -> list[Row]:
         """Drives of a participant, or of all, with what JSON holds read."""
-        where, given = (
-            (" WHERE participant = ?", [participant]) if participant else ("", [])
-        )
-        rows = self._store.rows(
-            f"SELECT * FROM attempts{where} ORDER BY participant, monotonic", *given
-        )
-        for row in rows:
-            row["facts"], row["measures"] = map(
-                json.loads, (row["facts"], row["measures"])
-            )
-        return rows
+        return listed_attempts(self._store, participant)
+
+
+def listed_attempts(store: Store, participant: str = "") -> list[Row]:
+    """Drives of a participant, or of all, with what JSON holds read.
+
+    Raises:
+        StoreError: If the store cannot be read.
+    """
+    where, given = (
+        (" WHERE participant = ?", [participant]) if participant else ("", [])
+    )
+    rows = store.rows(
+        f"SELECT * FROM attempts{where} ORDER BY participant, monotonic", *given
+    )
+    for row in rows:
+        row["facts"], row["measures"] = map(json.loads, (row["facts"], row["measures"]))
+    return rows

@@ -212,6 +212,8 @@ class Session:
     def withdraw(self, participant: str) -> int:
         """Delete all of a participant: rows, files, free pages; a count stays.
 
+        Tables and report in the folder go too; `costeer report` makes them again.
+
         Returns:
             How many files were deleted.
 
@@ -221,7 +223,7 @@ class Session:
         """
         self._person(participant)
         removed = 0
-        for file in self.files_of(participant):
+        for file in (*self.files_of(participant), *self.made_of_all()):
             file.unlink()
             removed += 1
         self.store.forget(participant)
@@ -234,6 +236,11 @@ class Session:
         for room in ("records", "practice", "aborted", "answers"):
             found += sorted((self.folder / room).glob(f"{participant}-*"))
         return [file for file in found if file.is_file()]
+
+    def made_of_all(self) -> list[Path]:
+        """Tables, figures and report in the folder, which hold rows of everybody."""
+        made = [*self.folder.glob("*.csv"), *(self.folder / "figures").glob("*.svg")]
+        return [*made, *self.folder.glob("report.html")]
 
     # Steps
 

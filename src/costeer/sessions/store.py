@@ -82,6 +82,21 @@ def now() -> Moment:
     return Moment(told.replace("+00:00", "Z"), round(time.monotonic(), 3))
 
 
+def seconds_of(utc: str) -> float:
+    """A moment of the wall clock as seconds since 1970.
+
+    Raises:
+        ValueError: If it is none.
+    """
+    return datetime.fromisoformat(utc.replace("Z", "+00:00")).timestamp()
+
+
+def utc_of(seconds: float) -> str:
+    """Seconds since 1970 as a moment of the wall clock, with milliseconds."""
+    told = datetime.fromtimestamp(seconds, UTC).isoformat(timespec="milliseconds")
+    return told.replace("+00:00", "Z")
+
+
 Row = dict[str, Any]
 
 

@@ -10,13 +10,19 @@ from costeer.records.metadata import PERSON
 from costeer.records.record import read_record
 from costeer.study.folder import locked, read_study, record_path
 from costeer.study.material import find_records
+from costeer.study.people import People, write_people_tables
 from costeer.study.report import write_report
 from costeer.study.run import remake_tables, settings_in
 from costeer.study.trial_tables import TRIALS_FILE
 from costeer.study.trials import study_trials
 
 
-def remake_report(folder: Path, tell: Callable[[str], None]) -> Path:
+def remake_report(
+    folder: Path,
+    tell: Callable[[str], None],
+    people: People | None = None,
+    beside: Path | None = None,
+) -> Path:
     """Make tables, tests, figures and `report.html` of a study again.
 
     The tables of a study with people stay as they are: they hold answers that no
@@ -25,6 +31,8 @@ def remake_report(folder: Path, tell: Callable[[str], None]) -> Path:
     Args:
         folder: Of the study.
         tell: Called with a few words before each step.
+        people: Whose drives these are, where there is no `study.yaml`.
+        beside: Folder of virtual drivers to compare with.
 
     Returns:
         Path of `report.html`.
@@ -33,12 +41,16 @@ def remake_report(folder: Path, tell: Callable[[str], None]) -> Path:
         ValueError: If it is no study, in use, or has no trial that can be read.
         OSError: If a file cannot be read or written.
     """
+    if people is not None:
+        tell("measures")
+        write_people_tables(folder, people)
+        return write_report(folder, tell, people, beside)
     read_study(folder)
     if not holds_human_trials(folder):
         tell("measures")
         remake_tables(folder)
     with locked(folder):
-        return write_report(folder, tell)
+        return write_report(folder, tell, beside=beside)
 
 
 def holds_human_trials(folder: Path) -> bool:

@@ -22,6 +22,7 @@ from costeer.records.record import read_record
 from costeer.study.folder import RECORDS, StudyFolder, read_study
 from costeer.study.measures import prepared
 from costeer.study.outcome import WITHIN, PairRow, StudyTests, SummaryRow
+from costeer.study.people import People, Who, tested_answers
 from costeer.study.quantities import WORKLOAD, Quantity
 from costeer.study.statistics import MEASURES, Measure, study_tests
 from costeer.study.trial_measures import trial_measures
@@ -52,6 +53,9 @@ class StudyMaterial(NamedTuple):
         tests: Tests, pairs, summaries and what was dropped.
         records: Path of each trial record by participant and condition.
         metadata: What each of them says of itself, in the same order.
+        people: Who drove, if these are people's drives and no study of costeer's.
+        answers: Tests of what they answered; None without answers.
+        beside: Virtual drivers to lay beside them.
     """
 
     study: StudyFolder
@@ -59,32 +63,56 @@ class StudyMaterial(NamedTuple):
     lane_changes: pd.DataFrame
     triggers: pd.DataFrame | None
     tests: StudyTests
-    records: dict[tuple[int, str], Path]
+    records: dict[tuple[Who, str], Path]
     metadata: tuple[dict[str, object], ...]
+    people: People | None = None
+    answers: StudyTests | None = None
+    beside: StudyMaterial | None = None
 
 
-def read_material(folder: Path) -> StudyMaterial:
+def read_material(folder: Path, people: People | None = None) -> StudyMaterial:
     """Read the tables of a study, test them, and find its records.
+
+    Args:
+        folder: Of the study.
+        people: Whose drives these are; None for a folder with `study.yaml`.
 
     Raises:
         ValueError: If the folder is no study, or a table is missing or unreadable.
     """
-    study = read_study(folder)
-    trials = _read_table(folder / TRIALS_FILE)
-    lane_changes = _read_table(folder / LANE_CHANGES_FILE)
+    study = read_study(folder) if people is None else people.study
+    trials = _read_table(folder / TRIALS_FILE, people is not None)
+    lane_changes = _read_table(folder / LANE_CHANGES_FILE, people is not None)
     tests = study_tests(trials, lane_changes, (*MEASURES, *_workload(trials)))
     measured = set(zip(trials["participant"], trials["condition"], strict=True))
+    found = find_records(folder) if people is None else people.records
     # A record without a row was not believed when the tables were made.
-    records = {k: path for k, path in find_records(folder).items() if k in measured}
+    records = {k: path for k, path in found.items() if k in measured}
     return StudyMaterial(
         study=study,
         trials=trials,
         lane_changes=lane_changes,
-        triggers=_read_triggers(folder / TRIGGERS_FILE, measured),
+        triggers=_read_triggers(folder / TRIGGERS_FILE, measured, people is not None),
         tests=tests,
         records=records,
         metadata=tuple(read_record(path, ()).metadata for path in records.values()),
+        people=people,
+        answers=None if people is None else tested_answers(people),
     )
+
+
+def read_virtual(folder: Path) -> StudyMaterial:
+    """A study of virtual drivers, to lay beside others.
+
+    Raises:
+        ValueError: If the folder is none.
+    """
+    found = read_material(folder)
+    if not is_virtual(found):
+        raise ValueError(
+            f"{folder} is a study with people; give --beside a folder of costeer study"
+        )
+    return found
 
 
 def _workload(trials: pd.DataFrame) -> list[Measure]:
@@ -94,19 +122,22 @@ def _workload(trials: pd.DataFrame) -> list[Measure]:
     return [Measure(name) for name in given]
 
 
-def _read_triggers(file: Path, measured: set[tuple[int, str]]) -> pd.DataFrame | None:
+def _read_triggers(
+    file: Path, measured: set[tuple[Who, str]], by_name: bool
+) -> pd.DataFrame | None:
     """The triggers of the trials that were measured; None if nobody judged them."""
     if not file.exists():
         return None
-    table = _read_table(file)
+    table = _read_table(file, by_name)
     keys = zip(table["participant"], table["condition"], strict=True)
     # An empty list would be taken for one of columns.
     return table[np.array([key in measured for key in keys], dtype=bool)]
 
 
-def _read_table(file: Path) -> pd.DataFrame:
+def _read_table(file: Path, by_name: bool) -> pd.DataFrame:
+    """A table of a study; pseudonyms such as 007 stay texts."""
     try:
-        return pd.read_csv(file)
+        return pd.read_csv(file, dtype={"participant": str} if by_name else None)
     except FileNotFoundError:
         raise ValueError(
             f"{file.parent} has no {file.name}: not one trial of this study is "
@@ -120,15 +151,17 @@ def _read_table(file: Path) -> pd.DataFrame:
         ) from None
 
 
-def find_records(folder: Path) -> dict[tuple[int, str], Path]:
+def find_records(folder: Path) -> dict[tuple[Who, str], Path]:
     """Return the trial records by participant and condition, in their order."""
-    found = {}
+    found: dict[tuple[Who, str], Path] = {}
     for path in (folder / RECORDS).glob("*.parquet"):
         match = _RECORD_NAME.fullmatch(path.name)
         if match and match[2] in CONDITION_NAMES:
             found[int(match[1]), match[2]] = path
     place = {name: index for index, name in enumerate(CONDITION_NAMES)}
-    return dict(sorted(found.items(), key=lambda item: (item[0][0], place[item[0][1]])))
+    return dict(
+        sorted(found.items(), key=lambda item: (int(item[0][0]), place[item[0][1]]))
+    )
 
 
 def conditions_driven(material: StudyMaterial) -> tuple[str, ...]:

@@ -15,6 +15,9 @@ from numpy.typing import NDArray
 DEG = 180.0 / math.pi
 """Degrees in a radian."""
 
+SCORE = "0–100"
+"""In place of a unit: the range of a score."""
+
 CONFIDENCE = 0.95
 """Level of every interval. Source: assumed, the level of the paper's bar charts."""
 
@@ -84,17 +87,30 @@ QUANTITIES: tuple[Quantity, ...] = (
     ),
 )
 WORKLOAD: tuple[Quantity, ...] = (
-    Quantity("tlx_raw", "trials", "NASA-TLX, raw", "NASA-TLX, raw", "0–100", digits=1),
+    Quantity("tlx_raw", "trials", "NASA-TLX, raw", "NASA-TLX, raw", SCORE, digits=1),
     Quantity(
         "tlx_weighted",
         "trials",
         "NASA-TLX, weighted",
         "NASA-TLX, weighted",
-        "0–100",
+        SCORE,
         digits=1,
     ),
 )
 """Asked of people after every trial; virtual drivers leave these cells empty."""
+
+WORKLOAD_ITEMS: tuple[Quantity, ...] = tuple(
+    Quantity(name, "answers", title, title, SCORE, digits=1)
+    for name, title in (
+        ("mental_demand", "Mental demand"),
+        ("physical_demand", "Physical demand"),
+        ("temporal_demand", "Temporal demand"),
+        ("performance", "Performance"),
+        ("effort", "Effort"),
+        ("frustration", "Frustration"),
+    )
+)
+"""The six items of the NASA-TLX; more is load, also of performance."""
 
 BY_STRENGTH = ("sdlp", "swrr")
 """Measures of lane keeping, which the paper also compares by strength alone."""

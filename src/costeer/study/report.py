@@ -9,12 +9,24 @@ from typing import NamedTuple
 from costeer.base.files import write_text
 from costeer.pages.frame import Picture, picture, write_figures
 from costeer.pages.style import styled
+from costeer.study.agreement import AgreementRow, agreement
 from costeer.study.figures.catalogue import FIGURE_NAMES, draw_figures
-from costeer.study.material import StudyMaterial, read_material
-from costeer.study.outcome import DroppedRow, EffectRow, PairRow, SummaryRow
+from costeer.study.material import StudyMaterial, read_material, read_virtual
+from costeer.study.outcome import (
+    DroppedRow,
+    EffectRow,
+    PairRow,
+    StudyTests,
+    SummaryRow,
+)
+from costeer.study.people import People
 from costeer.study.reporting.page import render
 from costeer.study.trial_tables import write_csv
 
+ANSWERS = "answers_"
+"""How the names of tables begin that hold tests of the items of the NASA-TLX."""
+
+AGREEMENT_FILE = "agreement.csv"
 FIGURES = "figures"
 REPORT_FILE = "report.html"
 NUM_STEPS = len(FIGURE_NAMES) + 2
@@ -38,7 +50,10 @@ STATISTICS_FILES = (
 
 
 def write_report(
-    folder: Path | str, progress: Callable[[str], None] | None = None
+    folder: Path | str,
+    progress: Callable[[str], None] | None = None,
+    people: People | None = None,
+    beside: Path | None = None,
 ) -> Path:
     """Write `tests.csv`, `pairs.csv`, `figures/` and `report.html` of a study.
 
@@ -49,6 +64,8 @@ def write_report(
     Args:
         folder: Of the study.
         progress: Called with a few words before each step.
+        people: Whose drives these are; None for a folder with `study.yaml`.
+        beside: Folder of virtual drivers to compare with.
 
     Returns:
         Path of `report.html`.
@@ -60,8 +77,13 @@ def write_report(
     tell = progress or _say_nothing
     path = Path(folder)
     tell("tests")
-    material = read_material(path)
-    _write_statistics(path, material)
+    material = read_material(path, people)
+    if beside is not None:
+        material = material._replace(beside=read_virtual(beside))
+    _write_statistics(path, material.tests)
+    if material.answers is not None:
+        _write_statistics(path, material.answers, ANSWERS)
+    _write_agreement(path / AGREEMENT_FILE, material)
     pictures = _write_figures(path / FIGURES, material, tell)
     tell("report")
     write_text(path / REPORT_FILE, render(material, pictures))
@@ -72,10 +94,19 @@ def _say_nothing(_: str) -> None:
     """Show no progress."""
 
 
-def _write_statistics(folder: Path, material: StudyMaterial) -> None:
+def _write_statistics(folder: Path, tests: StudyTests, prefix: str = "") -> None:
     for file in STATISTICS_FILES:
-        rows = [row._asdict() for row in getattr(material.tests, file.rows)]
-        write_csv(folder / file.name, rows, file.columns)
+        rows = [row._asdict() for row in getattr(tests, file.rows)]
+        write_csv(folder / f"{prefix}{file.name}", rows, file.columns)
+
+
+def _write_agreement(file: Path, material: StudyMaterial) -> None:
+    """Write how virtual drivers agree; remove what an earlier report has left."""
+    if material.beside is None:
+        file.unlink(missing_ok=True)
+        return
+    rows = [each._asdict() for each in agreement(material, material.beside)]
+    write_csv(file, rows, AgreementRow._fields)
 
 
 def _write_figures(

@@ -6,12 +6,15 @@ from collections.abc import Iterator
 
 from costeer.methods.conditions import STRENGTHS
 from costeer.pages.exhibit import Exhibit
+from costeer.study.disputes import disputes
 from costeer.study.figures import (
+    agreement,
     bars,
     detection,
     gain,
     inconsistency,
     signals,
+    timing,
     trajectories,
     workload,
 )
@@ -22,10 +25,13 @@ from costeer.study.quantities import QUANTITIES, WORKLOAD
 FIGURE_NAMES: tuple[str, ...] = (
     *(bars.file_name(each) for each in (*QUANTITIES, *WORKLOAD)),
     trajectories.NAME,
+    workload.ITEMS_NAME,
     detection.NAME,
     *(signals.file_name(each) for each in STRENGTHS),
     inconsistency.NAME,
     gain.NAME,
+    timing.NAME,
+    agreement.NAME,
 )
 """Stems of all files in `figures/`."""
 
@@ -51,3 +57,6 @@ def draw_figures(material: StudyMaterial) -> Iterator[Exhibit]:
     no_verdict = why_without(material, "num_inconsistencies")
     yield inconsistency.draw(episode, no_verdict)
     yield gain.draw(episode, gain_limit, no_verdict)
+    if not no_verdict:
+        yield timing.draw(material, disputes(material))
+    yield from agreement.draw(material)

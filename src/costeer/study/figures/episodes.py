@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from costeer.methods.conditions import MANUAL
 from costeer.records.record import read_record
 from costeer.study.inconsistencies import Inconsistency, find_inconsistencies
+from costeer.study.people import Who
 
 LONGEST_LEAD = 8.0
 """A trigger belongs to an inconsistency that begins within this time [s]. Source:
@@ -57,7 +58,7 @@ class Episode(NamedTuple):
         columns: The rows from shortly before the trigger to shortly after recovery.
     """
 
-    participant: int
+    participant: Who
     condition: str
     onset: float
     trigger: float
@@ -68,7 +69,7 @@ class Episode(NamedTuple):
 
 
 def exemplary_inconsistency(
-    records: dict[tuple[int, str], Path], replan_gain: float
+    records: dict[tuple[Who, str], Path], replan_gain: float
 ) -> Episode | None:
     """Return the inconsistency to show, or None if there was none.
 
@@ -80,7 +81,7 @@ def exemplary_inconsistency(
         records: Trial records by participant and condition.
         replan_gain: Gain below which the system plans anew [-].
     """
-    best: tuple[_Rank, tuple[int, str], Inconsistency] | None = None
+    best: tuple[_Rank, tuple[Who, str], Inconsistency] | None = None
     for key, path in records.items():
         if key[1] == MANUAL:
             continue
@@ -144,7 +145,7 @@ def inconsistent_spans(columns: dict[str, NDArray[Any]]) -> list[tuple[float, fl
     return list(zip(time[starts].tolist(), time[after].tolist(), strict=True))
 
 
-def _episode(key: tuple[int, str], path: Path, found: Inconsistency) -> Episode:
+def _episode(key: tuple[Who, str], path: Path, found: Inconsistency) -> Episode:
     record = read_record(path, _SHOWN)
     time = record.columns["time"]
     trigger = _trigger_before(record.columns, found.start_time)

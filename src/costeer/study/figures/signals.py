@@ -26,6 +26,7 @@ from costeer.study.crossings import RIGHT
 from costeer.study.figures.colours import condition_colour
 from costeer.study.figures.episodes import falls, rises
 from costeer.study.material import LANE_LINE, LANE_TICKS, StudyMaterial
+from costeer.study.people import Who
 from costeer.study.quantities import DEG
 
 _BEFORE, _AFTER = 8.0, 8.0
@@ -108,7 +109,7 @@ def _left_out(shown: list[Signal]) -> str:
     return f" Undefined throughout, not drawn: {', '.join(names)}." if names else ""
 
 
-def _caption(participant: int, strength: str, with_manual: bool) -> str:
+def _caption(participant: Who, strength: str, with_manual: bool) -> str:
     manual = (
         "Grey: the same participant's manual drive. "
         if with_manual
@@ -124,23 +125,23 @@ def _caption(participant: int, strength: str, with_manual: bool) -> str:
     )
 
 
-def _description(participant: int, strength: str) -> str:
+def _description(participant: Who, strength: str) -> str:
     return (
         f"Signals of participant {participant} against time, a column of panels "
         f"for each duration of {strength} guidance, each over the manual drive."
     )
 
 
-def _most_complete(material: StudyMaterial, strength: str) -> int | None:
+def _most_complete(material: StudyMaterial, strength: str) -> Who | None:
     """First participant with the most trials of this strength and manual."""
     wanted = (strength, MANUAL)
     keys = [key for key in material.records if condition(key[1]).strength in wanted]
     counts = {each: sum(key[0] == each for key in keys) for each, _ in keys}
-    return max(counts, key=lambda each: (counts[each], -each), default=None)
+    return max(counts, key=lambda each: counts[each], default=None)
 
 
 def _moments(
-    material: StudyMaterial, participant: int, strength: str
+    material: StudyMaterial, participant: Who, strength: str
 ) -> dict[str, Moment]:
     """The first lane change to the right of each trial of this strength and manual."""
     changes = material.lane_changes

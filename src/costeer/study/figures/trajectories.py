@@ -26,6 +26,7 @@ from costeer.pages.style import (
 from costeer.records.record import read_record
 from costeer.study.crossings import LEFT, RIGHT
 from costeer.study.material import LANE_LINE, LANE_TICKS, StudyMaterial
+from costeer.study.people import Who
 from costeer.study.quantities import half_width
 
 NAME = "trajectories"
@@ -48,8 +49,8 @@ class Own(NamedTuple):
         changes: Lane changes of each.
     """
 
-    positions: dict[int, NDArray[np.float64]]
-    changes: dict[int, int]
+    positions: dict[Who, NDArray[np.float64]]
+    changes: dict[Who, int]
 
 
 class Mean(NamedTuple):
@@ -130,7 +131,7 @@ def own_trajectories(material: StudyMaterial) -> dict[Key, Own]:
     own: dict[Key, Own] = {}
     changes = material.lane_changes.groupby(["participant", "condition"])
     for (participant, name), rows in changes:
-        path = material.records.get((int(participant), str(name)))
+        path = material.records.get((participant, str(name)))
         if path is None:
             continue
         record = read_record(path, ["time", "lateral_position"])
@@ -138,8 +139,8 @@ def own_trajectories(material: StudyMaterial) -> dict[Key, Own]:
         for direction, crossings in rows.groupby("direction")["crossing_time"]:
             aligned = _aligned(time, position, crossings)
             known = own.setdefault((str(name), int(direction)), Own({}, {}))
-            known.positions[int(participant)] = _column_means(aligned)
-            known.changes[int(participant)] = len(aligned)
+            known.positions[participant] = _column_means(aligned)
+            known.changes[participant] = len(aligned)
     return own
 
 

@@ -14,7 +14,7 @@ from costeer.methods.conditions import MANUAL
 from costeer.pages.numerals import listed, number, signed
 from costeer.study.material import StudyMaterial, summary
 from costeer.study.outcome import PUBLISHED, WITHIN
-from costeer.study.quantities import BY_STRENGTH, Quantity
+from costeer.study.quantities import BY_STRENGTH, SCORE, Quantity
 from costeer.study.reporting.comparisons import (
     AgainstManual,
     compared_levels,
@@ -57,7 +57,7 @@ def measure_sentences(material: StudyMaterial, quantity: Quantity) -> str:
     if manual is None or not math.isfinite(manual.mean):
         return _without_manual(material, quantity)
     mean = number(manual.mean * quantity.factor, quantity.digits)
-    sentences = [f"{mean} {quantity.unit} in manual driving."]
+    sentences = [f"{mean}{_unit(quantity)} in manual driving."]
     found = comparisons(material, quantity)
     kinds = dict.fromkeys((each.within, each.pooled) for each in found)
     for kind in sorted(kinds, key=_most_certain_first):
@@ -75,7 +75,7 @@ def _without_manual(material: StudyMaterial, quantity: Quantity) -> str:
         row = summary(material, quantity.name, factor, level)
         if row is not None and math.isfinite(row.mean):
             mean = number(row.mean * quantity.factor, quantity.digits)
-            means.append(f"{level} {mean} {quantity.unit}")
+            means.append(f"{level} {mean}{_unit(quantity)}")
     if not means:
         return "No trial has a value."
     return f"Means: {listed(means)}. No manual driving to compare with."
@@ -137,13 +137,19 @@ def _levels_text(
     if not known:
         return where
     low, high = (signed(f(known), quantity.digits) for f in (min, max))
-    return f"{where} ({low} to {high} {quantity.unit})"
+    return f"{where} ({low} to {high}{_unit(quantity)})"
 
 
 def _difference(quantity: Quantity, comparison: AgainstManual) -> str:
     if not math.isfinite(comparison.difference):
         return ""
-    return f" ({signed(comparison.difference, quantity.digits)} {quantity.unit})"
+    difference = signed(comparison.difference, quantity.digits)
+    return f" ({difference}{_unit(quantity)})"
+
+
+def _unit(quantity: Quantity) -> str:
+    """Unit after a number; a score has none."""
+    return "" if quantity.unit == SCORE else f" {quantity.unit}"
 
 
 def _factor_sentence(material: StudyMaterial, quantity: Quantity) -> str:

@@ -40,7 +40,9 @@ def settings_table(material: StudyMaterial) -> Table:
     return Table(
         name="settings",
         title="Settings of the study",
-        note="From study.yaml, SI units: all that determines the results.",
+        note="From study.yaml, SI units: all that determines the results."
+        if material.people is None
+        else "From plan and records, SI units.",
         header=("Setting", "Value"),
         rows=tuple(rows),
         num_labels=2,
@@ -73,7 +75,8 @@ def records_table(material: StudyMaterial) -> Table:
 
 def order_table(material: StudyMaterial) -> Table:
     """Return the order in which each participant drove the conditions."""
-    trials = material.trials.sort_values(["participant", "order"])
+    known = material.trials.dropna(subset=["order"])
+    trials = known.sort_values(["participant", "order"])
     orders = {
         str(participant): tuple(str(name) for name in rows["condition"])
         for participant, rows in trials.groupby("participant")
@@ -82,7 +85,9 @@ def order_table(material: StudyMaterial) -> Table:
     return Table(
         name="order",
         title="Order of the conditions",
-        note="Manual first, then a balanced Latin square (Williams).",
+        note="Manual first, then a balanced Latin square (Williams)."
+        if material.people is None
+        else "As driven; a dash where the order is not known or a trial is missing.",
         header=("Participant", *(str(place + 1) for place in range(places))),
         rows=tuple(
             (who, *names, *[NOTHING] * (places - len(names)))

@@ -120,10 +120,13 @@ def _drivers_sentence(material: StudyMaterial) -> str:
         where = "all seven conditions"
     else:
         where = f"the condition{'s' if len(names) > 1 else ''} {listed(names)}"
-    return (
-        f"{drivers(material, amount)} drove {where}, each over a course of "
-        f"{number(kilometres, 1)} km at a suggested {number(speed, 0)} km/h."
+    course = (
+        f", each over a course of {number(kilometres, 1)} km at a suggested "
+        f"{number(speed, 0)} km/h"
+        if math.isfinite(kilometres) and math.isfinite(speed)
+        else ""
     )
+    return f"{drivers(material, amount)} drove {where}{course}."
 
 
 def _trials_sentence(material: StudyMaterial) -> str:
@@ -140,6 +143,10 @@ def _trials_sentence(material: StudyMaterial) -> str:
 def _changes_sentence(material: StudyMaterial) -> str:
     parts = tallies(material)
     whole = total(parts)
+    if math.isnan(_course(material)):
+        changes = plural(whole.completed, "lane change")
+        verb = "was" if whole.completed == 1 else "were"
+        return f"{changes} {verb} completed; {_dropped(whole)}."
     if whole.planned == 0:
         return (
             "The course is too short for an overtaking event: no lane change planned."
@@ -173,7 +180,8 @@ def _method_sentence(material: StudyMaterial) -> str:
     intention = str(configuration.get("intention", "network"))
     model = str(configuration.get("intention_model_hash") or "")[:12]
     reading = {
-        "network": f"read by the network with weights {model}",
+        "network": "read by the network" + (f" with weights {model}" if model else ""),
+        "indicator": "told by the indicator",
         "scripted": "scripted: the system was told the driver's own plan, so that "
         "nothing here judges a network",
         "off": "not read",

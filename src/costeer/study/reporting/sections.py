@@ -8,8 +8,15 @@ from costeer.pages.frame import Picture, Section
 from costeer.pages.tables import Table, versions_table
 from costeer.study.material import StudyMaterial, is_virtual, why_without
 from costeer.study.quantities import BY_STRENGTH, WORKLOAD
-from costeer.study.reporting import event_tables, making, statistics_tables, tables
+from costeer.study.reporting import (
+    event_tables,
+    making,
+    people_tables,
+    statistics_tables,
+    tables,
+)
 from costeer.study.reporting.comparisons import shown_quantities
+from costeer.study.reporting.methods import methods_paragraphs
 from costeer.study.reporting.network import network_table
 from costeer.study.reporting.trigger_tables import trigger_costs_table
 
@@ -23,8 +30,9 @@ def page_sections(
         material: The study.
         pictures: By name.
     """
-    return [
+    sections = [
         _results(material),
+        _agreement(material, pictures),
         _lane_keeping(material, pictures),
         _lane_changes(material, pictures),
         _effort(material, pictures),
@@ -33,13 +41,27 @@ def page_sections(
         _signals(pictures),
         _tests(material),
         _trials(material),
+        _exclusions(material),
+        Section("methods", "Methods, ready to paste", methods_paragraphs(material), ()),
         _making(material),
     ]
+    return [each for each in sections if each is not None]
 
 
 def _results(material: StudyMaterial) -> Section:
     items = (tables.measures_table(material), event_tables.lane_changes_table(material))
     return Section("results", "Results in two tables", (), items)
+
+
+def _agreement(
+    material: StudyMaterial, pictures: Mapping[str, Picture]
+) -> Section | None:
+    if material.beside is None:
+        return None
+    text = (people_tables.agreement_sentence(material, material.beside),)
+    table = people_tables.agreement_table(material, material.beside)
+    items = (*_chosen(pictures, ("agreement",)), table)
+    return Section("agreement", "People beside virtual drivers", text, items)
 
 
 def _lane_keeping(material: StudyMaterial, pictures: Mapping[str, Picture]) -> Section:
@@ -73,7 +95,11 @@ def _lane_changes(material: StudyMaterial, pictures: Mapping[str, Picture]) -> S
 
 def _effort(material: StudyMaterial, pictures: Mapping[str, Picture]) -> Section:
     scores = tuple(each.name for each in WORKLOAD)
-    items = _chosen(pictures, ("driver_torque_rms", "workload", *scores))
+    items = _chosen(
+        pictures, ("driver_torque_rms", "workload", *scores, "workload-items")
+    )
+    if material.answers is not None:
+        items += (people_tables.answers_table(material.answers),)
     text = ("Root mean square of the driver's torque over the whole course.",)
     return Section("effort", "Effort", text, items)
 
@@ -105,9 +131,13 @@ _INTENTION_TEXTS = {
 def _inconsistencies(
     material: StudyMaterial, pictures: Mapping[str, Picture]
 ) -> Section:
-    items = _chosen(pictures, ("inconsistency", "gain-adjustment"))
-    table = event_tables.inconsistencies_table(material)
-    items += (table,) if table else ()
+    names = ("inconsistency-timing", "inconsistency", "gain-adjustment")
+    items = _chosen(pictures, names)
+    both = (
+        event_tables.inconsistencies_table(material),
+        people_tables.timing_table(material),
+    )
+    items += tuple(each for each in both if each is not None)
     why = why_without(material, "num_inconsistencies")
     text = (f"Nothing can be told: {why}.",) if why else _INCONSISTENT
     return Section("inconsistency", "Inconsistency and gain", text, items)
@@ -164,6 +194,18 @@ def _trials(material: StudyMaterial) -> Section:
     return Section("every-trial", "Every trial", (), (tables.trials_table(material),))
 
 
+def _exclusions(material: StudyMaterial) -> Section | None:
+    if material.people is None:
+        return None
+    table = people_tables.exclusions_table(material.people)
+    gone = material.people.num_withdrawn
+    text = [] if table else ["No drive was excluded, and no trial is missing."]
+    text += [f"{gone} withdrew; nothing of them is left."] if gone else []
+    return Section(
+        "exclusions", "Exclusion log", tuple(text), (table,) if table else ()
+    )
+
+
 def _making(material: StudyMaterial) -> Section:
     virtual = (
         "Each trial was simulated: car, steering column, leaders and driver at a "
@@ -171,13 +213,18 @@ def _making(material: StudyMaterial) -> Section:
         "from seed and number, its noise also from the condition, so the same "
         "settings give the same bytes.",
     )
+    answers = (
+        "makes all but the records again; with people it leaves the first three "
+        "tables, which hold their answers, as they are."
+        if material.people is None
+        else "makes all but records and answers again."
+    )
     text = (
         "This page, the tables and the figures hold nothing but what follows from the "
         "records and settings below; there is no date in them. The folder holds the "
         "records (records/), the tables as CSV (trials, lane_changes, triggers, tests, "
         "pairs, summaries, dropped) and the figures as SVG (figures/). costeer report "
-        "makes all but the records again; with people it leaves the first three "
-        "tables, which hold their answers, as they are.",
+        f"{answers}",
     )
     items = (
         making.settings_table(material),

@@ -1,0 +1,117 @@
+"""What happened in a session: the store's events, pauses, clocks that jump."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+
+from costeer.export.markers import markers_of
+from costeer.records.record import read_record
+from costeer.runtime.markers import Marker, told
+from costeer.sessions.attempts import listed_attempts
+from costeer.sessions.session import Session
+from costeer.sessions.store import Row, seconds_of, utc_of
+
+SMALLEST_JUMP = 1.0
+"""By which the two clocks must disagree between two events [s]. Source: assumed, far
+above what a time server corrects by slewing."""
+
+_KEPT = ("paused", "resumed", "gap", "fault", "error", "lost", "parameter", "condition")
+"""Kinds of markers that stand in the log of a study."""
+
+
+def event_rows(session: Session) -> list[dict[str, Any]]:
+    """Rows of `events.csv`; Any: cells."""
+    told_by_store = session.store.rows("SELECT * FROM events ORDER BY number")
+    rows = [_of_store(each) for each in told_by_store]
+    rows += list(clock_jumps(told_by_store))
+    for attempt in listed_attempts(session.store):
+        rows += _of_record(session.folder, attempt)
+    return sorted(rows, key=lambda row: row["utc"])
+
+
+def _of_store(event: Row) -> dict[str, Any]:
+    names = ("utc", "monotonic", "participant", "step", "kind", "text", "data")
+    row = {name: event[name] for name in names}
+    data = "" if row["data"] == "{}" else row["data"]
+    return row | {"data": data, "length": None, "trial_time": None, "record": ""}
+
+
+def clock_jumps(events: Sequence[Row]) -> Iterator[dict[str, Any]]:
+    """Where wall clock and monotonic clock disagree from one event to the next."""
+    for before, after in pairwise(events):
+        wall = seconds_of(after["utc"]) - seconds_of(before["utc"])
+        steady = after["monotonic"] - before["monotonic"]
+        if steady < 0.0:
+            yield _clock_row(
+                after, "clock restart", "the computer was started anew", None
+            )
+        elif abs(wall - steady) > SMALLEST_JUMP:
+            ahead = round(wall - steady, 3)
+            way = "forward" if ahead > 0 else "back"
+            text = f"the wall clock went {way} by {abs(ahead):g} s: it was set, or the "
+            yield _clock_row(after, "clock jump", f"{text}computer slept", ahead)
+
+
+def _clock_row(
+    event: Row, kind: str, text: str, length: float | None
+) -> dict[str, Any]:
+    return {
+        "utc": event["utc"],
+        "monotonic": event["monotonic"],
+        "participant": "",
+        "step": "",
+        "kind": kind,
+        "text": text,
+        "length": length,
+        "trial_time": None,
+        "record": "",
+        "data": "",
+    }
+
+
+def _of_record(folder: Path, attempt: Row) -> list[dict[str, Any]]:
+    """Pauses and faults of a drive, from the markers of its record."""
+    file = folder / attempt["record"]
+    if not attempt["record"] or not file.is_file():
+        return []
+    try:
+        metadata = read_record(file, ()).metadata
+    except ValueError:
+        return []  # the log of exclusions tells of it
+    rows, stood = [], 0.0
+    for marker in markers_of(metadata):
+        if marker.kind == "resumed" and isinstance(marker.after, float):
+            stood += marker.after
+        if marker.kind in _KEPT:
+            began = str(metadata.get("started_at") or "")
+            rows.append(
+                _marker_row(attempt, marker, _later(began, marker.time + stood))
+            )
+    return rows
+
+
+def _marker_row(attempt: Row, marker: Marker, utc: str) -> dict[str, Any]:
+    is_length = marker.kind in ("resumed", "gap") and isinstance(marker.after, float)
+    return {
+        "utc": utc,
+        "monotonic": None,
+        "participant": attempt["participant"],
+        "step": attempt["step"],
+        "kind": marker.kind,
+        "text": told(marker),
+        "length": marker.after if is_length else None,
+        "trial_time": marker.time,
+        "record": attempt["record"],
+        "data": "",
+    }
+
+
+def _later(utc: str, seconds: float) -> str:
+    """A moment so many seconds later; empty if it is not known."""
+    if not utc or not math.isfinite(seconds):
+        return ""
+    return utc_of(seconds_of(utc) + seconds)
