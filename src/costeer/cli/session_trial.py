@@ -81,7 +81,8 @@ def rehearse_study(folder: Path, said: Rehearsal) -> None:
         typer.Exit: With 1 if something was lost.
     """
     from costeer.methods.conditions import parse_conditions
-    from costeer.sessions.rehearse import RehearsalSettings, rehearse
+    from costeer.sessions.rehearse import rehearse
+    from costeer.sessions.robot import RehearsalSettings
 
     usual = RehearsalSettings()
     settings = RehearsalSettings(
