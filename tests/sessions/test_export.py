@@ -126,6 +126,8 @@ def test_matlab_reads_what_the_record_holds(studied: Path, tmp_path: Path) -> No
     consistent = columns["consistent"]
     wanted = np.ma.filled(record.columns["consistent"].astype(float), np.nan)
     assert np.array_equal(consistent, wanted, equal_nan=True)
+    manual = loadmat(tmp_path / "out" / "P01-manual.mat", simplify_cells=True)
+    assert np.isnan(manual["columns"]["consistent"]).all()
     words = found["labels"]["mode"]
     modes = [words[int(code)] for code in columns["mode"]]
     assert modes == record.columns["mode"].tolist()

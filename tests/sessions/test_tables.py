@@ -10,8 +10,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from costeer.cli import main
 from costeer.records.columns import COLUMNS
 from costeer.sessions.log import clock_jumps
+from costeer.sessions.questionnaires.definition import own_folder
 from costeer.sessions.session import Session
 from costeer.sessions.tables import write_all
 from costeer.study.measures import trial_row
@@ -200,6 +202,45 @@ def test_a_pseudonym_of_digits_stays_one(tmp_path: Path) -> None:
     write_all(tmp_path / "s", tmp_path / "out")
     found = rows(tmp_path / "out", "trials.csv")
     assert [row["participant"] for row in found] == ["007", "007"]
+
+
+def test_a_damaged_record_is_a_trial_that_is_missing(
+    studied: Path, tmp_path: Path
+) -> None:
+    folder = tmp_path / "study"
+    shutil.copytree(studied, folder)
+    record = folder / "records" / "P01-drive-manual.parquet"
+    record.write_bytes(record.read_bytes()[:1000])
+    write_all(folder, tmp_path / "out")
+    found = rows(tmp_path / "out", "trials.csv")
+    assert ("P01", "manual") not in {(r["participant"], r["condition"]) for r in found}
+    (gap,) = [r for r in rows(tmp_path / "out", "exclusions.csv") if r["utc"] == ""][:1]
+    assert (gap["participant"], gap["state"]) == ("P01", "missing")
+    assert gap["reason"] == "its record is not there, or cannot be read"
+
+
+def test_an_instrument_that_has_changed_gives_no_score(
+    studied: Path, tmp_path: Path
+) -> None:
+    folder = tmp_path / "study"
+    shutil.copytree(studied, folder)
+    (folder / "instruments").mkdir()
+    shipped = own_folder("instruments") / "nasa-tlx.yaml"
+    changed = shipped.read_text("utf-8").replace('version: "1"', 'version: "2"')
+    (folder / "instruments" / "nasa-tlx.yaml").write_text(changed, encoding="utf-8")
+    write_all(folder, tmp_path / "out")
+    scores = rows(tmp_path / "out", "scores.csv")
+    assert {row["value"] for row in scores if row["instrument"] == "nasa-tlx"} == {""}
+    assert {row["tlx_raw"] for row in rows(tmp_path / "out", "trials.csv")} == {""}
+
+
+def test_a_session_without_a_trial_is_refused_in_a_line(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    made_up_session(tmp_path / "s", [], ["manual", "weak-gentle"]).close()
+    assert main(["report", str(tmp_path / "s")]) == 2
+    error = capsys.readouterr().err
+    assert "has no trial that counts; drive one to its end" in error
 
 
 def test_two_trials_of_one_condition_are_refused(tmp_path: Path) -> None:

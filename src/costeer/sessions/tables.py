@@ -187,8 +187,17 @@ def _counted(session: Session, person: Row, own: Sequence[Row]) -> dict[str, Row
         if each["kind"] == "drive"
         and each["state"] == WHOLE
         and not each["excluded"]
-        and (session.folder / each["record"]).is_file()
+        and is_record(session.folder / each["record"])
     }
+
+
+def is_record(file: Path) -> bool:
+    """Whether a record is there and can be read."""
+    try:
+        read_record(file, ())
+    except (ValueError, OSError):
+        return False
+    return True
 
 
 def _drives(
@@ -267,7 +276,7 @@ def _missing(
         elif any(e["step"] == step.id and e["excluded"] for e in own):
             reason = "every attempt is excluded"
         elif any(e["step"] == step.id and e["state"] == WHOLE for e in own):
-            reason = "its record is not there"
+            reason = "its record is not there, or cannot be read"
         elif any(e["step"] == step.id for e in own):
             reason = "no attempt came to its end yet"
         yield Exclusion(who, step.id, step.condition, "", state, reason)
