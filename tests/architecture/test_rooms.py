@@ -8,7 +8,7 @@ from pathlib import Path
 
 from tests.architecture.source import PACKAGE, files, tree
 
-RIM = {"cli", "devices", "doctor", "runtime", "testing", "web", "__main__"}
+RIM = {"cli", "devices", "doctor", "runtime", "sessions", "testing", "web", "__main__"}
 """Rooms with a clock, devices and printing; `testing` tells how fast a method is."""
 
 CLOCKS = {"time", "datetime", "random", "secrets"}

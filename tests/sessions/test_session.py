@@ -18,13 +18,15 @@ from costeer.sessions.plan import (
     parsed_plan,
     session_steps,
 )
-from costeer.sessions.session import (
-    FINISHED,
-    WHOLE,
-    OutOfStepError,
-    Session,
-)
+from costeer.sessions.session import Session
+from costeer.sessions.standing import FINISHED, WHOLE, OutOfStepError
 from costeer.sessions.store import STORE_FILE, StoreError
+from costeer.sessions.withdrawal import (
+    files_of,
+    num_rows_of,
+    num_withdrawn,
+    withdraw,
+)
 
 SHORT = """
 title: Short
@@ -217,11 +219,11 @@ def test_withdrawal_deletes_rows_files_and_free_pages(tmp_path: Path) -> None:
         go_on(session, "P02")
     session.note("P01", "unusual words xylophone quartz")
     (tmp_path / "records/P01-drive-manual.arrow").write_bytes(b"stream")
-    files = len(session.files_of("P01"))
-    assert session.withdraw("P01") == files == 4
-    assert session.num_rows_of("P01") == 0
-    assert session.num_withdrawn() == 1
-    assert session.num_rows_of("P02") > 0
+    files = len(files_of(session, "P01"))
+    assert withdraw(session, "P01") == files == 4
+    assert num_rows_of(session, "P01") == 0
+    assert num_withdrawn(session) == 1
+    assert num_rows_of(session, "P02") > 0
     session.close()
     assert b"xylophone" not in (tmp_path / STORE_FILE).read_bytes()
     for other in tmp_path.glob(f"{STORE_FILE}-*"):

@@ -16,6 +16,7 @@ from costeer.sessions.log import clock_jumps
 from costeer.sessions.questionnaires.definition import own_folder
 from costeer.sessions.session import Session
 from costeer.sessions.tables import write_all
+from costeer.sessions.withdrawal import withdraw
 from costeer.study.measures import trial_row
 from costeer.study.quantities import WORKLOAD_ITEMS
 from tests.sessions.conftest import DRIVEN
@@ -183,7 +184,7 @@ def test_withdrawal_leaves_nothing_in_tables(studied: Path, tmp_path: Path) -> N
     write_all(folder, folder)
     (folder / "report.html").write_text("P01")
     session = Session(folder)
-    session.withdraw("P01")
+    withdraw(session, "P01")
     session.close()
     assert not list(folder.glob("*.csv"))
     assert not (folder / "report.html").exists()

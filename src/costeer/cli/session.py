@@ -248,6 +248,7 @@ def _serve(desk: Desk, access: Access, browser: bool) -> None:
 def _status(folder: Path) -> None:
     """Print who takes part and where each stands."""
     from costeer.sessions.session import Session
+    from costeer.sessions.withdrawal import num_withdrawn
 
     session = Session(folder)
     rows = []
@@ -264,7 +265,7 @@ def _status(folder: Path) -> None:
             ]
         )
     print_table(["participant", "row", "status", "at", "steps done", "reason"], rows)
-    gone = session.num_withdrawn()
+    gone = num_withdrawn(session)
     session.close()
     if gone:
         note(f"costeer: {gone} withdrew; nothing of them is left")
@@ -297,10 +298,11 @@ def _withdraw(folder: Path, participant: str | None) -> None:
         OSError: If something could not be deleted.
     """
     from costeer.sessions.session import Session
+    from costeer.sessions.withdrawal import withdraw
 
     if not participant:
         raise ValueError("whose data? give --participant P01")
     session = Session(folder)
-    files = session.withdraw(participant)
+    files = withdraw(session, participant)
     session.close()
     typer.echo(f"{participant}: {files} files and every row deleted")

@@ -197,9 +197,8 @@ class Cabin:
         if rule_of(method) != rule_of(self.method):
             self._tick = control_tick(method)
             lane = float(self.memory.row[_LANE])
-            self.memory = with_method(
-                self.memory, self.method, method, parameters, lane
-            )
+            old = self.memory, self.method
+            self.memory = with_method(*old, method, parameters, lane)
         else:
             self.memory.parameters[:] = packed(parameters)
         self.method, self._parameters = method, parameters
@@ -230,20 +229,11 @@ class Cabin:
 
     def _show(self, controls: Controls) -> None:
         """Let the hands on a simulated wheel see the drive."""
-        look = getattr(self.wheel, "see", None)
-        if look is None:
-            return
-        look(
-            Seen(
-                row=self.memory.row,
-                car=self.car,
-                road=self._parameters.road,
-                intended_angle=self.hands.intended_angle,
-                grip=self.hands.grip,
-                accelerator=controls.accelerator,
-                brake=controls.brake,
-            )
-        )
+        if look := getattr(self.wheel, "see", None):
+            hands = self.hands.intended_angle, self.hands.grip
+            pedals = controls.accelerator, controls.brake
+            road = self._parameters.road
+            look(Seen(self.memory.row, self.car, road, *hands, *pedals))
 
     def _given(self, controls: Controls) -> PersonInput:
         """Hands and foot move; the rest is passed on."""

@@ -46,7 +46,6 @@ from costeer.runtime.trace import Tracer
 from costeer.runtime.watchdog import stands_still
 
 NEVER = math.inf
-
 _LANE, _POSITION, _TIME, _ANGLE, _APPEARED = (
     ROW_COLUMNS.index(name)
     for name in (
@@ -351,11 +350,9 @@ class Driving:
         self._fault = Fault.NONE
         self._cabin.meet_wheel()
         self._run_state = RunState.RUNNING
-        if kind == "started":
-            self._mark(Marker(kind))
-            return
         stood = round(self._clock() - self._paused_at, 3)
-        self._mark(Marker(kind, after=stood, unit="s"))
+        is_new = kind == "started"
+        self._mark(Marker(kind) if is_new else Marker(kind, after=stood, unit="s"))
 
     def _forget_stall(self) -> None:
         """The watchdog has told the wheel to let go: it is to be opened anew, once."""

@@ -9,7 +9,8 @@ from pathlib import Path
 from typing import Any
 
 from costeer.sessions.plan import Step
-from costeer.sessions.session import WHOLE, Session, told_reason
+from costeer.sessions.session import Session
+from costeer.sessions.standing import WHOLE, told_reason
 from costeer.sessions.store import Row, Store, now
 
 # Any, in this file: facts and measures.

@@ -18,8 +18,9 @@ from typing import NamedTuple
 from costeer.base.files import write_text
 from costeer.sessions.attempts import Attempts
 from costeer.sessions.plan import PLAN_FILE, balance, paper_plan_text
-from costeer.sessions.robot import RehearsalSettings, Robot, playwright
-from costeer.sessions.session import WHOLE, Session
+from costeer.sessions.robot import RehearsalSettings, Robot, digest, playwright
+from costeer.sessions.session import Session
+from costeer.sessions.standing import WHOLE
 
 
 class Outcome(NamedTuple):
@@ -108,8 +109,8 @@ def _judged(folder: Path, robot: Robot, seconds: float) -> Outcome:
         for row in Attempts(session).listed()
     }
     lost_trials = sum(
-        rows.get(key, {}).get("state") != WHOLE or digest(folder, *key) != digest
-        for key, digest in robot.finished.items()
+        rows.get(key, {}).get("state") != WHOLE or digest(folder, *key) != before
+        for key, before in robot.finished.items()
     )
     slots = [int(row["slot"]) for row in session.people()]
     outcome = Outcome(

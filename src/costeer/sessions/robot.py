@@ -20,7 +20,7 @@ from typing import Any, NamedTuple
 
 from costeer.base.extras import install_command
 from costeer.sessions.rehearsal_server import RehearsalServer
-from costeer.sessions.session import WHOLE
+from costeer.sessions.standing import WHOLE
 
 # Any, in this file: of JSON, and objects of Playwright, which a plain install lacks.
 ACCIDENTS = ("server", "loop", "network", "watchdog", "browser")

@@ -10,7 +10,8 @@ from typing import Any
 from costeer.pages.numerals import listed, number, plural
 from costeer.sessions.answered import Answered
 from costeer.sessions.questionnaires.definition import load_definition
-from costeer.sessions.session import WHOLE, Session
+from costeer.sessions.session import Session
+from costeer.sessions.standing import WHOLE
 from costeer.sessions.store import Row
 from costeer.study.people import Drive
 

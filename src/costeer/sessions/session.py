@@ -7,10 +7,9 @@ that a process that dies at any moment is followed by one that goes on from ther
 from __future__ import annotations
 
 import json
-import re
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 from costeer.sessions.plan import (
     DONE,
@@ -21,39 +20,20 @@ from costeer.sessions.plan import (
     plan_hash,
     session_steps,
 )
-from costeer.sessions.store import OF_PEOPLE, STORE_FILE, Row, Store, now
+from costeer.sessions.standing import (
+    ACTIVE,
+    DROPPED,
+    FINISHED,
+    PSEUDONYM,
+    WHOLE,
+    WITHDRAWN,
+    OutOfStepError,
+    Standing,
+    told_reason,
+)
+from costeer.sessions.store import STORE_FILE, Row, Store, now
 
 # Any, in this file: values of answers, facts and measures.
-PSEUDONYM = re.compile(r"[A-Za-z]{0,4}[0-9]{1,4}")
-"""A few letters and a number: nobody is called so."""
-
-ACTIVE, FINISHED, WITHDRAWN, DROPPED = "active", "finished", "withdrawn", "dropped"
-"""How it stands with a participant."""
-
-WHOLE = "finished"
-"""An attempt at a drive that came to its end."""
-
-
-class OutOfStepError(ValueError):
-    """What was asked is for another step than the one that is on."""
-
-
-class Standing(NamedTuple):
-    """Where a participant stands.
-
-    Attributes:
-        participant: Pseudonym.
-        step: That is on.
-        number: Of the step, from 1.
-        of: Steps without the last.
-        attempts: Of the step.
-    """
-
-    participant: str
-    step: Step
-    number: int
-    of: int
-    attempts: tuple[Row, ...]
 
 
 class Session:
@@ -81,6 +61,15 @@ class Session:
         self._plans: dict[int, Plan] = {}
         self._steps: dict[str, tuple[Step, ...]] = {}
         self.plan_version = self._known_plan()
+
+    def forget(self, participant: str) -> None:
+        """Delete every row of a participant.
+
+        Raises:
+            StoreError: If that cannot be done.
+        """
+        self.store.forget(participant)
+        self._steps.pop(participant, None)
 
     def close(self) -> None:
         """Close the store."""
@@ -111,7 +100,7 @@ class Session:
 
     def plan_of(self, participant: str) -> Plan:
         """The plan that a participant began with."""
-        version = int(self._person(participant)["plan"])
+        version = int(self.person(participant)["plan"])
         if version not in self._plans:
             rows = self.store.rows("SELECT text FROM plans WHERE version = ?", version)
             self._plans[version] = parsed_plan(rows[0]["text"], f"plan {version}")
@@ -120,7 +109,7 @@ class Session:
     def steps_of(self, participant: str) -> tuple[Step, ...]:
         """All steps of a participant."""
         if participant not in self._steps:
-            slot = int(self._person(participant)["slot"])
+            slot = int(self.person(participant)["slot"])
             self._steps[participant] = session_steps(self.plan_of(participant), slot)
         return self._steps[participant]
 
@@ -130,7 +119,7 @@ class Session:
         """Participants in the order in which they came."""
         return self.store.rows("SELECT * FROM participants ORDER BY utc, participant")
 
-    def _person(self, participant: str) -> Row:
+    def person(self, participant: str) -> Row:
         """A participant.
 
         Raises:
@@ -194,7 +183,7 @@ class Session:
 
     def language_of(self, participant: str) -> str:
         """Language of a participant's texts."""
-        return str(self._person(participant)["language"])
+        return str(self.person(participant)["language"])
 
     def drop(self, participant: str, reason: str) -> None:
         """Count a participant out; the data stay, the slot is free for another.
@@ -204,43 +193,10 @@ class Session:
             StoreError: If it cannot be written.
         """
         told = told_reason(reason)
-        row = self._person(participant) | {"status": DROPPED, "reason": told}
+        row = self.person(participant) | {"status": DROPPED, "reason": told}
         with self.store.transaction():
             self.store.put("participants", row)
             self.store.tell("dropped", told, participant)
-
-    def withdraw(self, participant: str) -> int:
-        """Delete all of a participant: rows, files, free pages; a count stays.
-
-        Tables and report in the folder go too; `costeer report` makes them again.
-
-        Returns:
-            How many files were deleted.
-
-        Raises:
-            ValueError: If there is none.
-            OSError: If something could not be deleted.
-        """
-        self._person(participant)
-        removed = 0
-        for file in (*self.files_of(participant), *self.made_of_all()):
-            file.unlink()
-            removed += 1
-        self.store.forget(participant)
-        self._steps.pop(participant, None)
-        return removed
-
-    def files_of(self, participant: str) -> list[Path]:
-        """Every file of a participant's drives, streams and traces too."""
-        found = []
-        for room in ("records", "practice", "aborted", "answers"):
-            found += sorted((self.folder / room).glob(f"{participant}-*"))
-        return [file for file in found if file.is_file()]
-
-    def made_of_all(self) -> list[Path]:
-        """Tables, figures and report in the folder, which hold rows of everybody."""
-        made = [*self.folder.glob("*.csv"), *(self.folder / "figures").glob("*.svg")]
-        return [*made, *self.folder.glob("report.html")]
 
     # Steps
 
@@ -321,7 +277,7 @@ class Session:
         ids = [each.id for each in self.steps_of(participant)]
         done = {step, *self.over(participant)}
         if all(each in done for each in ids if each != DONE.id):
-            row = self._person(participant) | {"status": FINISHED}
+            row = self.person(participant) | {"status": FINISHED}
             self.store.put("participants", row)
             self.store.tell("finished", participant=participant)
 
@@ -350,7 +306,7 @@ class Session:
                 "DELETE FROM answers WHERE participant = ? AND step = ?",
                 *(participant, step),
             )
-            row = self._person(participant) | {"status": ACTIVE}
+            row = self.person(participant) | {"status": ACTIVE}
             self.store.put("participants", row)
             self.store.tell("repeat", told, participant, step)
 
@@ -422,33 +378,6 @@ class Session:
         step = self.standing(participant).step.id if participant else ""
         with self.store.transaction():
             self.store.tell("note", told, participant, step)
-
-    def num_withdrawn(self) -> int:
-        """How many have withdrawn; who they were is not known any more."""
-        return len(self.store.rows("SELECT number FROM withdrawn"))
-
-    def num_rows_of(self, participant: str) -> int:
-        """Rows that the store holds of a participant."""
-        return sum(
-            len(
-                self.store.rows(
-                    f"SELECT 1 FROM {table} WHERE participant = ?", participant
-                )
-            )
-            for table in OF_PEOPLE
-        )
-
-
-def told_reason(reason: str) -> str:
-    """A reason, if it is one.
-
-    Raises:
-        ValueError: If it is empty.
-    """
-    told = " ".join(reason.split())
-    if not told:
-        raise ValueError("give a reason; it stands in the log of exclusions")
-    return told[:500]
 
 
 def _texts(answers: Mapping[str, Any]) -> dict[str, str]:

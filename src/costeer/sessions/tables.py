@@ -23,8 +23,10 @@ from costeer.sessions.fields import (
 from costeer.sessions.log import event_rows
 from costeer.sessions.plan import Step
 from costeer.sessions.said import sentences
-from costeer.sessions.session import DROPPED, WHOLE, Session
+from costeer.sessions.session import Session
+from costeer.sessions.standing import DROPPED, WHOLE
 from costeer.sessions.store import Row
+from costeer.sessions.withdrawal import num_withdrawn
 from costeer.study.people import (
     Drive,
     Exclusion,
@@ -173,7 +175,7 @@ def people_in(session: Session, answered: Sequence[Answered]) -> People:
         drives=ordered,
         exclusions=tuple(out),
         said=sentences(session, ordered, analysed, attempts),
-        num_withdrawn=session.num_withdrawn(),
+        num_withdrawn=num_withdrawn(session),
     )
 
 

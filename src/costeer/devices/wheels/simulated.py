@@ -142,10 +142,10 @@ def simulated_description(
     """
     SimulatedWheelParameters(**_known(options))
     content: dict[str, Any] = dict(options)  # Any: what JSON holds
-    if hands is not None:
-        content["hands"] = (
-            hands._asdict() if isinstance(hands, SpringHands) else dict(hands)
-        )
+    if isinstance(hands, SpringHands):
+        content["hands"] = hands._asdict()
+    elif hands is not None:
+        content["hands"] = dict(hands)
     if torque_cell:
         content["torque_cell"] = torque_cell
     return WheelDescription(
@@ -303,8 +303,7 @@ class SimulatedWheel:
 
     def see(self, seen: Seen) -> None:
         """Let hands that move look at the drive, once in a control step."""
-        look = getattr(self._hands, "see", None)
-        if look is not None:
+        if look := getattr(self._hands, "see", None):
             look(seen)
 
     def write(self, torque: float) -> None:

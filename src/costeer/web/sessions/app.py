@@ -16,7 +16,7 @@ from starlette.types import ASGIApp
 from starlette.websockets import WebSocket
 
 from costeer.sessions.questionnaires.answers import AnswersError
-from costeer.sessions.session import OutOfStepError
+from costeer.sessions.standing import OutOfStepError
 from costeer.sessions.store import StoreError
 from costeer.web.app import application, hello, hold, json_response
 from costeer.web.pages import file_in, file_response, static_folder

@@ -11,8 +11,9 @@ from typing import Any
 
 from costeer.sessions.plan import balance
 from costeer.sessions.questionnaires.texts import languages
-from costeer.sessions.session import ACTIVE, FINISHED
+from costeer.sessions.standing import ACTIVE, FINISHED
 from costeer.sessions.store import now
+from costeer.sessions.withdrawal import num_withdrawn, withdraw
 from costeer.web.sessions.desk import Desk
 from costeer.web.sessions.step_drive import RUNNING, SAVING
 
@@ -54,7 +55,7 @@ class Console:
                 "languages": languages(self._session.folder),
                 "language": self._session.plan.language,
                 "planned": self._session.plan.participants,
-                "withdrawn": self._session.num_withdrawn(),
+                "withdrawn": num_withdrawn(self._session),
                 "attempts": self._attempts(),
                 "checks": self._desk.checked,
                 "page_seen": time.monotonic() - self._desk.page_seen,
@@ -229,7 +230,7 @@ class Console:
         if who == self._desk.participant:
             self.leave()
             self._desk.wait_until_idle()
-        self._session.withdraw(who)
+        withdraw(self._session, who)
 
     def check(self) -> None:
         """Look at the devices."""

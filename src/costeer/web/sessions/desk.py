@@ -29,7 +29,8 @@ from costeer.sessions.questionnaires.instrument import (
     rendered,
 )
 from costeer.sessions.questionnaires.texts import load_texts
-from costeer.sessions.session import Session, Standing
+from costeer.sessions.session import Session
+from costeer.sessions.standing import Standing
 from costeer.sessions.store import StoreError
 from costeer.web.drive import PageOptions
 from costeer.web.sessions.judged import driven_whole, measured

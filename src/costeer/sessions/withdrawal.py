@@ -1,0 +1,59 @@
+"""A participant who withdraws: everything is deleted, and only a count stays."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from costeer.sessions.session import Session
+from costeer.sessions.store import OF_PEOPLE
+
+ROOMS = ("records", "practice", "aborted")
+"""Folders with files of participants."""
+
+
+def withdraw(session: Session, participant: str) -> int:
+    """Delete all of a participant: rows, files, free pages; a count stays.
+
+    Tables and report in the folder go too; `costeer report` makes them again.
+
+    Returns:
+        How many files were deleted.
+
+    Raises:
+        ValueError: If there is none.
+        OSError: If something could not be deleted.
+    """
+    session.person(participant)
+    files = [*files_of(session, participant), *made_of_all(session.folder)]
+    for file in files:
+        file.unlink()
+    session.forget(participant)
+    return len(files)
+
+
+def files_of(session: Session, participant: str) -> list[Path]:
+    """Every file of a participant's drives, streams and traces too."""
+    found: list[Path] = []
+    for room in ROOMS:
+        found += sorted((session.folder / room).glob(f"{participant}-*"))
+    return [file for file in found if file.is_file()]
+
+
+def made_of_all(folder: Path) -> list[Path]:
+    """Tables, figures and report in a folder, which hold rows of everybody."""
+    made = [*folder.glob("*.csv"), *(folder / "figures").glob("*.svg")]
+    return [*made, *folder.glob("report.html")]
+
+
+def num_withdrawn(session: Session) -> int:
+    """How many have withdrawn; who they were is not known any more."""
+    return len(session.store.rows("SELECT number FROM withdrawn"))
+
+
+def num_rows_of(session: Session, participant: str) -> int:
+    """Rows that the store holds of a participant."""
+    query = "SELECT 1 FROM {} WHERE participant = ?"
+    found = (
+        session.store.rows(query.format(table), participant) for table in OF_PEOPLE
+    )
+    return sum(map(len, found))
