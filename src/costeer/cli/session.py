@@ -72,13 +72,13 @@ def session(
     accidents: Annotated[
         float,
         typer.Option(help="With rehearse: how often a minute something is killed."),
-    ] = 1.0,
+    ] = 0.5,
     conditions: Annotated[
         str, typer.Option(help="With rehearse: of the assisted trials, by commas.")
     ] = "",
     length: Annotated[
         float, typer.Option(help="With rehearse: of a trial [m].")
-    ] = 600.0,
+    ] = 450.0,
     seed: Annotated[
         int, typer.Option(help="With rehearse and power: of all that is random.")
     ] = 1,

@@ -44,7 +44,7 @@ class RehearsalSettings(NamedTuple):
     Attributes:
         participants: How many.
         seed: Of answers and accidents.
-        accidents: In each participant's session, on average.
+        accidents: Each minute, on average.
         haste: Seconds of a drive in a second.
         length: Of a trial [m].
         conditions: Of the block of trials; the plan's if empty.
@@ -52,9 +52,9 @@ class RehearsalSettings(NamedTuple):
 
     participants: int = 12
     seed: int = 1
-    accidents: float = 1.0
-    haste: float = 10.0
-    length: float = 600.0
+    accidents: float = 0.5
+    haste: float = 20.0
+    length: float = 450.0
     conditions: tuple[str, ...] = ()
 
 

@@ -146,8 +146,7 @@ def simulated_description(
         content["hands"] = hands._asdict()
     elif hands is not None:
         content["hands"] = dict(hands)
-    if torque_cell:
-        content["torque_cell"] = torque_cell
+    content |= {"torque_cell": torque_cell} if torque_cell else {}
     return WheelDescription(
         "simulated", json.dumps(content), "simulated wheel", identity
     )
