@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
@@ -110,6 +110,7 @@ class Attempts:
         attempt: int,
         measures: Mapping[str, Any] | None,
         reason: str = "",
+        latency: Sequence[str] = (),
     ) -> None:
         """End a drive: whole with its measures, or aborted for a reason.
 
@@ -121,6 +122,7 @@ class Attempts:
             attempt: Its number.
             measures: Of a drive that is whole; None if it was aborted.
             reason: Why it was aborted, or what to know of it.
+            latency: From device to page, in words.
 
         Raises:
             StoreError: If it cannot be written.
@@ -138,6 +140,7 @@ class Attempts:
             "record": record,
             "reason": reason,
             "measures": dict(measures or {}),
+            "facts": json.loads(row["facts"]) | {"latency": list(latency)},
             "ended": now().utc,
         }
         with self._store.transaction():

@@ -99,7 +99,7 @@ class Plan(NamedTuple):
     car: str = "default"
     intention: str = "network"
     parameters: Mapping[str, float] = {}
-    self_paced: bool = False
+    self_paced: bool = True
     about: str = ""
 
 

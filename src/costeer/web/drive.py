@@ -68,10 +68,12 @@ class PageOptions(NamedTuple):
     Attributes:
         input: "keyboard", "gamepad" or "wheel".
         show_signals: Whether a driver's page may show the live signals.
+        driver_starts: Whether a driver's page may start the drive.
     """
 
     input: str = "keyboard"
     show_signals: bool = True
+    driver_starts: bool = True
 
 
 class DriveOnPages:
@@ -226,6 +228,9 @@ class DriveOnPages:
         elif isinstance(message, Latency):
             self.latencies.extend(message.values)
         elif isinstance(message, Start | Resume | Restart):
+            is_start = isinstance(message, Start) and role == "driver"
+            if is_start and not self._options.driver_starts:
+                raise ValueError("the experimenter starts this drive; please wait")
             self.drive.send(type(message).__name__.lower())
         elif isinstance(message, Pause):
             self.drive.send("pause", role)

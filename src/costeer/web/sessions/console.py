@@ -15,7 +15,7 @@ from costeer.sessions.standing import ACTIVE, FINISHED
 from costeer.sessions.store import now
 from costeer.sessions.withdrawal import num_withdrawn, withdraw
 from costeer.web.sessions.desk import Desk
-from costeer.web.sessions.step_drive import RUNNING, SAVING
+from costeer.web.sessions.step_drive import PAUSED, RUNNING, SAVING
 
 # Any, in this file: of JSON.
 SCARCE = 2_000_000_000
@@ -171,7 +171,7 @@ class Console:
 
     def _refuse_while_driving(self) -> None:
         drive = self._desk.drive
-        if drive is not None and drive.state in (RUNNING, SAVING):
+        if drive is not None and drive.state in (RUNNING, PAUSED, SAVING):
             raise ValueError("a drive is on; stop it first")
 
     def _command(self, *command: object) -> None:

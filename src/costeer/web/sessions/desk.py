@@ -293,7 +293,7 @@ class Desk:
         check_drive(setup)
         number, record = self.attempts.next(who, step)
         self._driven, self._is_begun = (who, step.id, number), False
-        options = PageOptions(input=self.devices.input, show_signals=False)
+        options = PageOptions(self.devices.input, False, plan.self_paced)
         self._drive = StepDrive(setup, record, options, self._end)
         self._drive.begin()
 
@@ -324,7 +324,7 @@ class Desk:
         if driven is None:
             return
         if is_begun:
-            self._keep(driven, *self._judged(driven, outcome))
+            self._keep(driven, *self._judged(driven, outcome), outcome.facts)
         with self.lock:
             self._forget_drive(outcome)
 
@@ -351,11 +351,12 @@ class Desk:
         driven: tuple[str, str, int],
         measures: dict[str, Any] | None,
         reason: str,
+        latency: tuple[str, ...],
     ) -> None:
         """Write the end of an attempt, again and again while the disk is full."""
         while True:
             try:
-                self.attempts.end(*driven, measures, reason)
+                self.attempts.end(*driven, measures, reason, latency)
             except StoreError as error:
                 self.trouble = str(error)
                 if self._is_closing:

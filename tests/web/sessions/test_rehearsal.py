@@ -1,0 +1,52 @@
+"""The short form of a rehearsal: one participant, accidents, nothing lost."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+
+from costeer.sessions.plan import balance, parsed_plan, session_steps
+from costeer.sessions.rehearse import rehearsal_plan, rehearse
+from costeer.sessions.robot import RehearsalSettings
+
+
+def test_the_rehearsed_plan_is_the_papers_with_short_drives() -> None:
+    plan = parsed_plan(rehearsal_plan(RehearsalSettings()))
+    assert (plan.participants, plan.length) == (12, 450.0)
+    assert balance(plan, range(1, 13)).is_even
+    steps = session_steps(plan, 1)
+    assert sum(each.kind == "drive" for each in steps) == 7
+    assert all(each.minutes <= 0.1 for each in steps)
+
+
+def test_a_folder_with_a_study_is_not_rehearsed_over(tmp_path: Path) -> None:
+    (tmp_path / "plan.yaml").write_text("title: mine")
+    with pytest.raises(ValueError, match="holds a study already"):
+        rehearse(tmp_path, RehearsalSettings())
+    assert (tmp_path / "plan.yaml").read_text() == "title: mine"
+
+
+@pytest.mark.browser
+@pytest.mark.slow
+@pytest.mark.timeout(1200)
+def test_whatever_is_killed_no_answer_and_no_finished_drive_is_lost(
+    tmp_path: Path,
+) -> None:
+    pytest.importorskip("playwright")
+    said: list[str] = []
+    settings = RehearsalSettings(
+        participants=1,
+        seed=3,
+        accidents=4.0,
+        length=150.0,
+        conditions=("strong-rapid",),
+    )
+    found = rehearse(tmp_path / "study", settings, said.append)
+    assert found.participants == 1, said
+    assert (found.lost_answers, found.lost_trials) == (0, 0), said
+    assert found.trials == 4  # practice and trial, manual and with guidance
+    assert found.answers > 50
+    killed = [line for line in said if re.search("is killed", line)]
+    assert len(killed) == sum(found.accidents.values())
