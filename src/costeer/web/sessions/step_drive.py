@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from costeer.runtime.frame import PLACE
 from costeer.runtime.markers import Marker
 from costeer.runtime.setup import DriveSetup
-from costeer.runtime.states import Fault, RunState
+from costeer.runtime.states import Fault, Loss, RunState
 from costeer.runtime.stream import record_paths
 from costeer.web.drive import DriveOnPages, PageOptions
 
@@ -102,6 +102,7 @@ class StepDrive:
         self.state = STARTING
         self.reason = ""
         self.markers: list[Marker] = []
+        self._lost: list[str] = []
         self.pages: DriveOnPages | None = None
         self._opened: DriveOnPages | None = None
         self._thread = threading.Thread(target=self._start, daemon=True)
@@ -138,6 +139,10 @@ class StepDrive:
             self.end(True, "")
         elif marker.kind == "fault" and marker.name == Fault.LOOP_GONE.word:
             self.end(False, Fault.LOOP_GONE.text)
+        elif marker.kind == "lost" and marker.name == Loss.WATCHDOG.word:
+            self.end(False, Fault.UNWATCHED.text)  # nobody drives on without it
+        elif marker.kind == "lost":
+            self._lost.append(marker.name)
         elif marker.kind in ("fault", "error"):
             self.reason = _words(marker)
         elif marker.kind in ("resumed", "started"):
@@ -179,7 +184,9 @@ class StepDrive:
             pages.broadcast.send({"type": "farewell"})
             pages.stop()
             kept, facts = pages.drive.kept, tuple(pages.account())
-            reason = "; ".join([each for each in (reason, *pages.drive.unkept) if each])
+            lost = [f"{name} was lost on the way" for name in self._lost]
+            parts = (reason, *lost, *pages.drive.unkept)
+            reason = "; ".join([each for each in parts if each])
         record = kept[-1] if kept else None
         outcome = Outcome(record, reached_end and record is not None, reason, facts)
         self._ended(outcome)
