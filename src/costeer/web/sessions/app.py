@@ -52,13 +52,13 @@ def _drive_routes(desk: Desk, access: Access) -> list[BaseRoute]:
     """Of the drive that is on: what `costeer drive` answers."""
 
     async def answer_hello(request: Request) -> Response:
-        drive = desk.drive
+        drive = desk.drive_on_show
         if drive is None or drive.pages is None:
             return _refused(409, "no drive is on")
         return json_response(hello(drive.pages, role_of(access, request)))
 
     async def answer_socket(websocket: WebSocket) -> None:
-        drive = desk.drive
+        drive = desk.drive_on_show
         if drive is None or drive.pages is None:
             await websocket.close(1013)
             return

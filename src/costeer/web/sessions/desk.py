@@ -89,6 +89,11 @@ class Desk:
         """The drive that is on."""
         return self._drive
 
+    @property
+    def drive_on_show(self) -> StepDrive | None:
+        """The drive of the step that is on; none while one only waits for its step."""
+        return self._drive if self._is_begun else None
+
     def standing(self) -> Standing | None:
         """Where the participant stands; None without one."""
         if not self.participant:
