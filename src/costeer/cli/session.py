@@ -78,7 +78,7 @@ def session(
     ] = "",
     length: Annotated[
         float, typer.Option(help="With rehearse: of a trial [m].")
-    ] = 450.0,
+    ] = 300.0,
     seed: Annotated[
         int, typer.Option(help="With rehearse and power: of all that is random.")
     ] = 1,

@@ -15,6 +15,8 @@ from numpy.typing import NDArray
 
 from costeer.base.entry import entry, entry_for
 from costeer.base.packing import leaf_names, pack, packed, unpack
+from costeer.drivers import arm
+from costeer.drivers.arm import ArmCommand, ArmParameters
 from costeer.loop.half_step import initial_control
 from costeer.loop.parameters import LoopParameters
 from costeer.loop.person import (
@@ -222,6 +224,32 @@ def wheel_tick(
     )
     pack(motion, moved)
     return torque
+
+
+_ARMS, _ARM_STATE, _COMMAND = ArmParameters(), arm.initial_state(), ArmCommand()
+
+
+@entry
+def arms_tick(
+    parameters: NDArray[np.float64],
+    state: NDArray[np.float64],
+    command: NDArray[np.float64],
+    angle: float,
+    dt: float,
+) -> float:
+    """Arms one step on; returns the torque of their muscles on the wheel [N·m].
+
+    Args:
+        parameters: Packed `ArmParameters`.
+        state: Packed `ArmState`, changed in place.
+        command: Packed `ArmCommand`.
+        angle: Of the wheel [rad].
+        dt: Step [s].
+    """
+    arms, asked = unpack(_ARMS, parameters), unpack(_COMMAND, command)
+    moved = arm.step(arms, unpack(_ARM_STATE, state), asked, angle, dt)
+    pack(state, moved)
+    return arm.muscle_torque(arms, moved, asked, angle)
 
 
 class ObserverMemory(NamedTuple):

@@ -56,7 +56,7 @@ def rehearsal_plan(settings: RehearsalSettings) -> str:
     ):
         text = re.sub(rf"(?m)^{name}: .*$", f"{name}: {value}", text)
     text = re.sub(r"longest_minutes: [0-9.]+", "longest_minutes: 1", text)
-    text = re.sub(r"(?<!longest_)minutes: [0-9.]+", "minutes: 0.02", text)
+    text = re.sub(r"(?<!longest_)minutes: [0-9.]+", "minutes: 0.002", text)
     if settings.conditions:
         chosen = ", ".join(settings.conditions)
         text = re.sub(r"conditions: \[.*\]", f"conditions: [{chosen}]", text)

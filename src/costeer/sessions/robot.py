@@ -54,7 +54,7 @@ class RehearsalSettings(NamedTuple):
     seed: int = 1
     accidents: float = 0.5
     haste: float = 20.0
-    length: float = 450.0
+    length: float = 300.0
     conditions: tuple[str, ...] = ()
 
 
@@ -191,7 +191,7 @@ class Robot:
         if self._page is not None:
             with suppress(self._errors):
                 self._page.close()
-        self._page = self._browser.new_page(viewport={"width": 640, "height": 360})
+        self._page = self._browser.new_page(viewport={"width": 480, "height": 320})
         self._page.goto(self.server.address + "/?lowgfx=1")
 
     # One step

@@ -14,7 +14,7 @@ from costeer.sessions.robot import RehearsalSettings
 
 def test_the_rehearsed_plan_is_the_papers_with_short_drives() -> None:
     plan = parsed_plan(rehearsal_plan(RehearsalSettings()))
-    assert (plan.participants, plan.length) == (12, 450.0)
+    assert (plan.participants, plan.length) == (12, 300.0)
     assert balance(plan, range(1, 13)).is_even
     steps = session_steps(plan, 1)
     assert sum(each.kind == "drive" for each in steps) == 7

@@ -13,6 +13,7 @@ from itertools import pairwise
 from pathlib import Path
 from typing import Any, NamedTuple, Protocol
 
+from costeer.base.packing import packed
 from costeer.drivers import arm, driver
 from costeer.drivers.arm import ArmCommand, ArmParameters
 from costeer.drivers.driver import DriverParameters
@@ -20,6 +21,7 @@ from costeer.drivers.interface import DriverNoise, Knowledge, Perception
 from costeer.drivers.population import participant_driver
 from costeer.loop.noise import driver_noise
 from costeer.loop.parameters import DT
+from costeer.loop.realtime import arms_tick
 from costeer.plant.parameters import (
     CarParameters,
     ColumnParameters,
@@ -82,9 +84,20 @@ class _Arms:
     is_virtual = False
 
     def __init__(self, parameters: ArmParameters, dt: float) -> None:
-        self._arms, self._dt = parameters, dt
-        self._state = arm.initial_state()
-        self._command = ArmCommand()
+        self._dt = dt
+        self._rest()
+        self._hold(parameters)
+        self._ask(ArmCommand())
+
+    def _rest(self) -> None:
+        self._state = packed(arm.initial_state())
+
+    def _hold(self, parameters: ArmParameters) -> None:
+        self._arms, self._numbers = parameters, packed(parameters)
+
+    def _ask(self, command: ArmCommand) -> None:
+        self._asked = packed(command)
+        self._damping = float(arm.arm_damping(self._arms, command.stiffening))
 
     def pedals(self) -> tuple[float, float]:
         """No pedals of its own."""
@@ -92,14 +105,12 @@ class _Arms:
 
     def __call__(self, time: float, angle: float, rate: float) -> float:
         """Torque of muscles on the rim [N·m], less what damps the arms."""
-        hands, command = self._arms, self._command
-        self._state = arm.step(hands, self._state, command, angle, self._dt)
-        pulled = arm.muscle_torque(hands, self._state, command, angle)
-        return float(pulled - arm.arm_damping(hands, command.stiffening) * rate)
+        pulled = arms_tick(self._numbers, self._state, self._asked, angle, self._dt)
+        return float(pulled - self._damping * rate)
 
     def _intend(self, angle: float, speed: float, car: CarParameters) -> None:
         stiffness = holding_stiffness(car, ColumnParameters(), max(speed, 1.0))
-        self._command = ArmCommand(intended_angle=angle, holding_stiffness=stiffness)
+        self._ask(ArmCommand(intended_angle=angle, holding_stiffness=stiffness))
 
 
 _SPEED = ROW_COLUMNS.index("longitudinal_velocity")
@@ -119,8 +130,10 @@ class KeyHands(_Arms):
     def see(self, seen: Seen) -> None:
         """Take what is asked; hands that ask nothing rest on the rim."""
         hands, grip = self._relaxed, seen.grip
-        self._arms = hands._replace(
-            holding_gain=hands.holding_gain * grip, stiffness=hands.stiffness * grip
+        self._hold(
+            hands._replace(
+                holding_gain=hands.holding_gain * grip, stiffness=hands.stiffness * grip
+            )
         )
         self._intend(seen.intended_angle, float(seen.row[_SPEED]), seen.car)
 
@@ -220,7 +233,8 @@ class VirtualHands(_Arms):
         if now < self._last:  # a trial begins
             centre = lane_centre(seen.road, cruising_lane(seen.road))
             self._mind = driver.initial_state(self._driver, centre)
-            self._state, self._steps = arm.initial_state(), 0
+            self._rest()
+            self._steps = 0
         self._last = now
         known = Knowledge(car=seen.car, column=ColumnParameters(), road=seen.road)
         draws = DriverNoise(*self._noise[self._steps % len(self._noise)].tolist())
@@ -228,7 +242,7 @@ class VirtualHands(_Arms):
         self._mind, action = driver.act(
             self._driver, self._mind, known, perceived(seen), draws, DT
         )
-        self._command = action.arm
+        self._ask(action.arm)
         self._pedals = (float(action.pedals.accelerator), float(action.pedals.brake))
 
 
