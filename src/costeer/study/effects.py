@@ -205,6 +205,8 @@ def _noncentrality_of_f(
     """Noncentrality under which F stays below the statistic with that probability."""
     from scipy import stats
 
+    if statistic < _SMALL_T**2:
+        return 0.0  # the library gives NaN where numbers are denormal
     if statistic > _LARGE_T**2:
         return float(statistic * df1 * stats.chi2.ppf(1.0 - probability, df2) / df2)
 
