@@ -6,6 +6,7 @@ import json
 import signal
 import subprocess
 import sys
+import urllib.error
 import urllib.request
 from contextlib import suppress
 from pathlib import Path
@@ -33,6 +34,7 @@ class RehearsalServer:
         Raises:
             ValueError: If it does not come.
         """
+        self._forget()
         log = self._log.open("a", encoding="utf-8")
         self._process = subprocess.Popen(
             self._command, stdout=subprocess.PIPE, stderr=log, text=True
@@ -66,8 +68,14 @@ class RehearsalServer:
                 self._process.wait(60)
         if self.is_alive and self._process is not None:
             self._process.kill()
+        self._forget()
+
+    def _forget(self) -> None:
+        """Let a server that has ended go."""
         if self._process is not None:
             self._process.wait()
+            if self._process.stdout is not None:
+                self._process.stdout.close()
 
     def ask(self, path: str, body: dict[str, Any] | None = None) -> dict[str, Any]:
         """What the server answers.
@@ -80,8 +88,12 @@ class RehearsalServer:
             None if body is None else json.dumps(body).encode(),
             {"Content-Type": "application/json"},
         )
-        with urllib.request.urlopen(request, timeout=30) as answer:
-            found: dict[str, Any] = json.load(answer)
+        try:
+            with urllib.request.urlopen(request, timeout=30) as answer:
+                found: dict[str, Any] = json.load(answer)
+        except urllib.error.HTTPError as error:
+            error.close()
+            raise
         return found
 
     def console(self, action: str = "", **given: Any) -> dict[str, Any]:
