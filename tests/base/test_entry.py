@@ -69,6 +69,7 @@ def run_package(folder: Path) -> tuple[float, int]:
     return float(result), int(hits)
 
 
+@pytest.mark.slow
 def test_editing_a_called_equation_changes_the_result(tmp_path: Path) -> None:
     write_package(tmp_path, factor=2.0)
     assert run_package(tmp_path) == (20.0, 0)

@@ -40,6 +40,7 @@ def bare(whole: Path, tmp_path: Path) -> Path:
     return tmp_path / "study"
 
 
+@pytest.mark.slow
 def test_records_alone_bring_back_every_byte(
     whole: Path, bare: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -175,6 +175,7 @@ def test_a_yaw_from_0_to_2_pi_is_the_same_drive() -> None:
     assert doubts_of(wrapped) == ["yaw_angle runs from 0 to 2 pi: taken as -pi to pi"]
 
 
+@pytest.mark.slow
 def test_signs_that_contradict_each_other_are_told_with_the_fit() -> None:
     whole = table(recorded(1))
     flipped = with_columns(whole, yaw_angle=-whole.columns["yaw_angle"])

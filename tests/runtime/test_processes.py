@@ -104,6 +104,7 @@ def test_change_goes_from_the_command_to_the_record_with_all_its_fields(
     assert 0.5 < markers[1].time <= markers[3].time < PATIENCE
 
 
+@pytest.mark.slow
 def test_drive_keeps_to_the_clock_with_verdicts_and_leaves_its_record(
     begin: Begin, tmp_path: Path
 ) -> None:

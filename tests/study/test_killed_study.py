@@ -65,6 +65,7 @@ def command(script: str, out: Path) -> list[str]:
     return [sys.executable, "-c", script, str(out)]
 
 
+@pytest.mark.slow
 def test_a_killed_study_goes_on_where_it_was(tmp_path: Path) -> None:
     out, whole = tmp_path / "out", tmp_path / "whole"
     died = subprocess.run(command(KILLED, out), cwd=ROOT, check=False)

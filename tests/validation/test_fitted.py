@@ -93,6 +93,7 @@ def test_leaders_are_known_from_events_or_gaps_or_lane_changes() -> None:
     assert not same_trial(with_columns(record, event=none)).events
 
 
+@pytest.mark.slow
 def test_a_recording_without_lane_changes_says_what_is_not_compared() -> None:
     record = recorded(1)
     nothing = np.zeros(len(record.columns["time"]))
