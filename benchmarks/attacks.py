@@ -267,7 +267,7 @@ def attacked(number: int) -> list[Tally]:
         def app(access: Access) -> object:
             return drive_app(session, access, static)
 
-        with served(app) as open_one, served(app, GUARDED) as guarded:  # type: ignore[arg-type]
+        with served(app) as open_one, served(app, GUARDED) as guarded:  # type: ignore[arg-type]  # the fake has what is asked of a session
             assert opens(open_one, origin=own_origin(open_one)), "nobody gets in at all"
             assert opens(guarded, f"?token={TOKEN}"), "nobody gets in at all"
             return [

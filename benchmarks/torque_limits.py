@@ -155,8 +155,8 @@ class Trouble:
             self.written.append(torque)
             write(torque)
 
-        wheel.read = lambda: self._spoilt(read())  # type: ignore[method-assign]
-        wheel.write = told  # type: ignore[method-assign]
+        wheel.read = lambda: self._spoilt(read())  # type: ignore[method-assign]  # on purpose
+        wheel.write = told  # type: ignore[method-assign]  # on purpose
 
     def _spoilt(self, reading: WheelReading) -> WheelReading:
         if self._left == 0:

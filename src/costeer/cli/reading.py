@@ -105,8 +105,7 @@ def reads_tables(command: Callable[..., Result]) -> Callable[..., Result]:
     ]
     parameters = [*own, *shared]
     run.__annotations__ = {each.name: each.annotation for each in parameters}
-    # Typer reads a command's options from its signature.
-    run.__signature__ = signature(command).replace(  # type: ignore[attr-defined]
+    run.__signature__ = signature(command).replace(  # type: ignore[attr-defined]  # of Typer
         parameters=parameters
     )
     return run

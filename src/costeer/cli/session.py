@@ -101,10 +101,15 @@ def session(
         costeer session export my-study --format bids --out shared
     """
     rehearsal = Rehearsal(participants, seed, accidents, haste, conditions, length)
+    lab = _Lab(wheel, head, 1.0 if haste is None else haste)
     acts = {
         "new": partial(_new, folder, plan),
         "run": partial(
-            _run, folder, _Lab(wheel, head, haste or 1.0), (host, port), browser
+            _run,
+            folder,
+            _Lab(wheel, head, 1.0 if haste is None else haste),
+            (host, port),
+            browser,
         ),
         "status": partial(_status, folder),
         "export": partial(_export, folder, to, out),
@@ -162,6 +167,7 @@ class _Lab(NamedTuple):
 def _run(folder: Path, lab: _Lab, where: tuple[str, int], browser: bool) -> None:
     """Serve both pages until Ctrl-C."""
     from costeer.sessions.session import Session
+    from costeer.study.folder import locked
     from costeer.web.security import access_for
     from costeer.web.serving import listening
     from costeer.web.sessions.desk import Desk
@@ -174,13 +180,14 @@ def _run(folder: Path, lab: _Lab, where: tuple[str, int], browser: bool) -> None
             signal.signal(getattr(signal, name), _stop)
     session = Session(folder)
     _compile(session.plan, devices)
-    desk = Desk(session, devices)
-    try:
-        _serve(desk, access, browser)
-    finally:
-        for number in (signal.SIGINT, signal.SIGTERM):
-            signal.signal(number, signal.SIG_IGN)  # not to be cut short
-        desk.close()
+    with locked(folder):  # a second one would take running drives for aborted
+        desk = Desk(session, devices)
+        try:
+            _serve(desk, access, browser)
+        finally:
+            for number in (signal.SIGINT, signal.SIGTERM):
+                signal.signal(number, signal.SIG_IGN)  # not to be cut short
+            desk.close()
     if desk.trouble:
         note(f"costeer: {desk.trouble}")
         raise typer.Exit(1)
@@ -299,10 +306,12 @@ def _withdraw(folder: Path, participant: str | None) -> None:
     """
     from costeer.sessions.session import Session
     from costeer.sessions.withdrawal import withdraw
+    from costeer.study.folder import locked
 
     if not participant:
         raise ValueError("whose data? give --participant P01")
     session = Session(folder)
-    files = withdraw(session, participant)
-    session.close()
+    with locked(folder):  # whose session runs withdraws on the console
+        files = withdraw(session, participant)
+        session.close()
     typer.echo(f"{participant}: {files} files and every row deleted")

@@ -17,10 +17,13 @@ from typing import NamedTuple
 
 from costeer.base.files import write_text
 from costeer.sessions.attempts import Attempts
-from costeer.sessions.plan import PLAN_FILE, balance, paper_plan_text
+from costeer.sessions.plan import PLAN_FILE, balance, paper_plan_text, parsed_plan
 from costeer.sessions.robot import RehearsalSettings, Robot, digest, playwright
 from costeer.sessions.session import Session
 from costeer.sessions.standing import WHOLE
+
+_RANGES = {"participants": (1, 1000), "haste": (1.0, 100.0), "accidents": (0.0, 60.0)}
+"""Of settings that the plan does not judge."""
 
 
 class Outcome(NamedTuple):
@@ -81,8 +84,14 @@ def rehearse(
     """
     if (folder / PLAN_FILE).exists():
         raise ValueError(f"{folder} holds a study already; give a new folder")
+    for name, (low, high) in _RANGES.items():
+        value = getattr(settings, name)
+        if not low <= value <= high:
+            raise ValueError(f"{name} is {value:g}; give {low:g} to {high:g}")
+    plan = rehearsal_plan(settings)
+    parsed_plan(plan)
     folder.mkdir(parents=True, exist_ok=True)
-    write_text(folder / PLAN_FILE, rehearsal_plan(settings))
+    write_text(folder / PLAN_FILE, plan)
     begun = time.monotonic()
     with playwright() as library:
         robot = Robot(folder, settings, library, told)

@@ -296,16 +296,25 @@ class Robot:
                 time.sleep(0.5)
 
     def _browser_pid(self) -> int:
-        """Of the browser that Playwright has started."""
+        """Of the browser that this process has started; no other is touched."""
         found = subprocess.run(
             ["ps", "-eo", "pid,ppid,args"], capture_output=True, text=True, check=True
         ).stdout
-        own = str(browser_path()).rpartition("/")[2].partition("-")[0]
+        parents: dict[int, int] = {}
+        browsers: list[int] = []
         for line in found.splitlines()[1:]:
-            pid, _, command = line.split(None, 2)
-            if own in command and "--type=" not in command and "--headless" in command:
-                return int(pid)
-        return 0
+            pid, parent, command = line.split(None, 2)
+            parents[int(pid)] = int(parent)
+            if "--headless" in command and "--type=" not in command:
+                browsers.append(int(pid))
+        return next((pid for pid in browsers if _is_below(pid, parents)), 0)
+
+
+def _is_below(pid: int, parents: dict[int, int]) -> bool:
+    """Whether this process has started another, perhaps by way of others."""
+    while pid in parents and pid != os.getpid():
+        pid = parents[pid]
+    return pid == os.getpid()
 
 
 def _kill_tree(pid: int) -> None:

@@ -28,6 +28,16 @@ def test_a_folder_with_a_study_is_not_rehearsed_over(tmp_path: Path) -> None:
     assert (tmp_path / "plan.yaml").read_text() == "title: mine"
 
 
+@pytest.mark.parametrize("wrong", [{"haste": 0.0}, {"participants": 0}, {"length": 1}])
+def test_settings_that_cannot_be_leave_no_folder(
+    tmp_path: Path, wrong: dict[str, float]
+) -> None:
+    settings = RehearsalSettings()._replace(**wrong)  # type: ignore[arg-type]
+    with pytest.raises(ValueError, match=f"{next(iter(wrong))} is"):
+        rehearse(tmp_path / "study", settings)
+    assert not (tmp_path / "study").exists()
+
+
 @pytest.mark.browser
 @pytest.mark.slow
 @pytest.mark.timeout(1200)
