@@ -104,13 +104,7 @@ def session(
     lab = _Lab(wheel, head, 1.0 if haste is None else haste)
     acts = {
         "new": partial(_new, folder, plan),
-        "run": partial(
-            _run,
-            folder,
-            _Lab(wheel, head, 1.0 if haste is None else haste),
-            (host, port),
-            browser,
-        ),
+        "run": partial(_run, folder, lab, (host, port), browser),
         "status": partial(_status, folder),
         "export": partial(_export, folder, to, out),
         "withdraw": partial(_withdraw, folder, participant),
