@@ -190,13 +190,15 @@ def _run(folder: Path, lab: _Lab, where: tuple[str, int], browser: bool) -> None
 def _compile(plan: Plan, devices: Devices) -> None:
     """Have the machine code of all drives ready before anybody waits for it."""
     from costeer.runtime.cabin import Cabin
-    from costeer.runtime.setup import DriveSetup
+    from costeer.runtime.setup import DriveSetup, check_drive
     from costeer.sessions.plan import session_steps, trial_of
 
     steps = [step for step in session_steps(plan, 1) if step.drives]
     trials = {step.method: trial_of(plan, step, 1) for step in steps}
     for trial in trials.values():
-        Cabin(DriveSetup(trial, devices.wheel, devices.calibration)).warm_up()
+        setup = DriveSetup(trial, devices.wheel, devices.calibration)
+        check_drive(setup._replace(haste=devices.haste))
+        Cabin(setup).warm_up()
 
 
 def _stop(*_: object) -> None:
