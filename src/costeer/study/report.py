@@ -30,7 +30,7 @@ AGREEMENT_FILE = "agreement.csv"
 FIGURES = "figures"
 REPORT_FILE = "report.html"
 NUM_STEPS = len(FIGURE_NAMES) + 2
-"""How often a report of a finished study tells of a step, about."""
+"""How often a report tells of a step: each figure is one, drawn or not."""
 
 
 class StatisticsFile(NamedTuple):
@@ -118,5 +118,7 @@ def _write_figures(
         for exhibit in draw_figures(material):
             tell(f"figure {exhibit.name}")
             pictures.append(picture(exhibit))
+    for _ in range(len(pictures), len(FIGURE_NAMES)):
+        tell("figure that cannot be drawn")
     write_figures(folder, pictures, FIGURE_NAMES)
     return pictures
