@@ -13,6 +13,7 @@ from costeer.controller.signals import (
     Intention,
     Target,
 )
+from costeer.plant.alignment import line_curvature
 from costeer.plant.parameters import RoadParameters
 from costeer.plant.road import lane_centre
 from costeer.sensing.measurement import Measurement
@@ -70,15 +71,18 @@ def plan_path(
     """Path from the car to the centre of `lane`: Eq. (3).
 
     Its first three control points match the car's position, slope and curvature, its
-    last three lie on the new lane's centre; it is V_x · change_duration long.
+    last three lie on the new lane's centre; it is V_x · change_duration long. On a
+    curved road the path is one along and across the road: what the road turns by itself
+    is taken off.
     """
     speed = xp.maximum(measurement.longitudinal_velocity, _SLOWEST)
+    bend = line_curvature(measurement.road_curvature, measurement.lateral_position)
     return quintic(
         measurement.longitudinal_position,
         speed * parameters.change_duration,
         measurement.lateral_position,
         xp.tan(measurement.yaw_angle),
-        measurement.yaw_rate / speed,
+        measurement.yaw_rate / speed - bend,
         lane_centre(road, lane),
     )
 
@@ -138,18 +142,24 @@ def choose_mode(
 def target(
     state: TrajectoryState, road: RoadParameters, measurement: Measurement
 ) -> Target:
-    """Planned motion at the car's place, position, slope and curvature closed form."""
+    """Planned motion at the car's place, position, slope and curvature closed form.
+
+    kappa_d is the road's curvature plus that of the path along it.
+    """
     point = path_point(state.path, measurement.longitudinal_position)
     changing = state.mode == LANE_CHANGING
     centre = lane_centre(road, state.lane)
-    along = measurement.longitudinal_velocity * point.curvature_slope
+    speed = measurement.longitudinal_velocity
+    position = xp.select(changing, point.lateral_position, centre)
+    bend = line_curvature(measurement.road_curvature, position)
+    slope = xp.select(changing, point.curvature_slope, 0.0)
     return Target(
         mode=state.mode,
         lane=state.lane,
-        lateral_position=xp.select(changing, point.lateral_position, centre),
+        lateral_position=position,
         heading=xp.select(changing, xp.atan(point.slope), 0.0),
-        curvature=xp.select(changing, point.curvature, 0.0),
-        curvature_rate=xp.select(changing, along, 0.0),
+        curvature=xp.select(changing, point.curvature, 0.0) + bend,
+        curvature_rate=speed * (slope + measurement.road_curvature_slope),
         path=state.path,
     )
 

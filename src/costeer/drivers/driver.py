@@ -175,6 +175,7 @@ def see(
     near_distance = speed * eyes.near_time
     wanted = tracking.aim(
         aimed,
+        knowledge.alignment,
         measurement.longitudinal_position,
         near_distance,
         speed * eyes.anticipation_time,
@@ -182,7 +183,7 @@ def see(
     new_state, asked = vision.step(
         eyes,
         state.vision,
-        vision.far_angle(measurement, wanted.far_slope),
+        vision.far_angle(measurement, wanted.far_slope, wanted.far_turn),
         vision.near_angle(measurement, wanted.near_position, near_distance),
         speed,
         VisionNoise(near=noise.near, motor=noise.motor),

@@ -15,6 +15,7 @@ from costeer.base.array import Flag, Real
 from costeer.base.sources import source_hash
 from costeer.drivers.arm import ArmCommand
 from costeer.drivers.longitudinal import Pedals
+from costeer.plant.alignment import STRAIGHT, Alignment
 from costeer.plant.parameters import CarParameters, ColumnParameters, RoadParameters
 from costeer.plant.traffic import LeaderState
 from costeer.sensing.measurement import Measurement
@@ -24,11 +25,19 @@ S = TypeVar("S")
 
 
 class Knowledge(NamedTuple):
-    """What the driver knows by experience: car, wheel and road."""
+    """What the driver knows by experience and sees of the road ahead.
+
+    Attributes:
+        car: As the driver knows it.
+        column: Of the wheel.
+        road: Its lanes.
+        alignment: How it runs; `plant.alignment` has what it looks like from the car.
+    """
 
     car: CarParameters
     column: ColumnParameters
     road: RoadParameters
+    alignment: Alignment = STRAIGHT
 
 
 class Perception(NamedTuple):

@@ -11,6 +11,13 @@ from typing import NamedTuple
 from costeer.base import array as xp
 from costeer.base.array import Real, compiled
 from costeer.base.bezier import Quintic, path_point, quintic
+from costeer.plant.alignment import (
+    Alignment,
+    bend_at,
+    line_curvature,
+    road_offset,
+    road_turn,
+)
 from costeer.plant.parameters import RoadParameters
 from costeer.plant.road import lane_centre
 from costeer.sensing.measurement import Measurement
@@ -52,14 +59,17 @@ class Aim(NamedTuple):
     """The wanted path where the driver looks.
 
     Attributes:
-        near_position: Lateral position at the near point [m].
-        far_slope: Direction of the path at the far point [-].
-        far_curvature: Its curvature there [1/m].
+        near_position: Lateral position of the near point, from the tangent of the
+            road at the car [m].
+        far_slope: Direction of the path at the far point along the road [-].
+        far_curvature: Its curvature there, that of the road with it [1/m].
+        far_turn: How far the road turns until there [rad].
     """
 
     near_position: Real
     far_slope: Real
     far_curvature: Real
+    far_turn: Real
 
 
 @compiled
@@ -87,12 +97,13 @@ def planned(
         duration: That the driver plans [s].
     """
     speed = xp.maximum(measurement.longitudinal_velocity, 1.0)
+    bend = line_curvature(measurement.road_curvature, measurement.lateral_position)
     return quintic(
         measurement.longitudinal_position,
         speed * duration,
         measurement.lateral_position,
         xp.tan(measurement.yaw_angle),
-        measurement.yaw_rate / speed,
+        measurement.yaw_rate / speed - bend,
         lane_centre(road, lane) + parameters.lane_bias,
     )
 
@@ -125,6 +136,7 @@ def wander(
 @compiled
 def aim(
     state: TrackingState,
+    alignment: Alignment,
     longitudinal_position: Real,
     near_distance: Real,
     far_distance: Real,
@@ -133,14 +145,19 @@ def aim(
 
     Args:
         state: Path and wander.
+        alignment: How the road runs.
         longitudinal_position: Of the car [m].
         near_distance: To the near point [m].
         far_distance: To the far point [m].
     """
     near = path_point(state.path, longitudinal_position + near_distance)
     far = path_point(state.path, longitudinal_position + far_distance)
+    beside = road_offset(alignment, longitudinal_position, near_distance)
+    there = bend_at(alignment, longitudinal_position + far_distance)
     return Aim(
-        near_position=near.lateral_position + state.wander,
+        near_position=near.lateral_position + state.wander + beside,
         far_slope=far.slope,
-        far_curvature=far.curvature,
+        far_curvature=far.curvature
+        + line_curvature(there.curvature, far.lateral_position),
+        far_turn=road_turn(alignment, longitudinal_position, far_distance),
     )

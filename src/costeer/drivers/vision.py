@@ -95,7 +95,8 @@ def near_angle(measurement: Measurement, near_position: Real, distance: Real) ->
 
     Args:
         measurement: Where the car is and points.
-        near_position: Wanted lateral position there [m].
+        near_position: Wanted lateral position there, from the road's tangent at the
+            car [m].
         distance: To the near point [m].
     """
     offset = near_position - measurement.lateral_position
@@ -103,9 +104,15 @@ def near_angle(measurement: Measurement, near_position: Real, distance: Real) ->
 
 
 @compiled
-def far_angle(measurement: Measurement, slope: Real) -> Real:
-    """Angle from the car's direction to the wanted path's at the far point [rad]."""
-    return xp.atan(slope) - measurement.yaw_angle
+def far_angle(measurement: Measurement, slope: Real, turn: Real = 0.0) -> Real:
+    """Angle from the car's direction to the wanted path's at the far point [rad].
+
+    Args:
+        measurement: Where the car points.
+        slope: Of the path along the road there [-].
+        turn: How far the road turns until there [rad].
+    """
+    return xp.atan(slope) + turn - measurement.yaw_angle
 
 
 @compiled

@@ -6,6 +6,7 @@ from typing import Any, Generic, NamedTuple, TypeVar
 
 from costeer.base.array import Real
 from costeer.drivers.driver import DriverParameters
+from costeer.plant.alignment import STRAIGHT, Alignment
 from costeer.plant.parameters import CarParameters, ColumnParameters, RoadParameters
 from costeer.plant.traffic import TrafficParameters
 from costeer.sensing.sensors import SensorParameters
@@ -49,6 +50,7 @@ class LoopParameters(NamedTuple, Generic[P]):
             the method.
         plant_steps: Plant steps in a control step [-]. Source: assumed, 8 make 480
             Hz.
+        alignment: How the road runs [SI units]. Source: the scenario.
     """
 
     controller: P
@@ -62,3 +64,4 @@ class LoopParameters(NamedTuple, Generic[P]):
     follows_plan: Real = 0.0
     assists: Real = 1.0
     plant_steps: int = 8
+    alignment: Alignment = STRAIGHT

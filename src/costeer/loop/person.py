@@ -23,9 +23,10 @@ from costeer.drivers.interface import Action
 from costeer.drivers.longitudinal import Pedals
 from costeer.loop.half_step import ControlState, Sample, Seat, half_step
 from costeer.loop.parameters import DT, LoopParameters
-from costeer.loop.step import PlantHeld, PlantMotion, plant_step
+from costeer.loop.step import PlantHeld, PlantMotion, bend_of, plant_step
 from costeer.methods.interface import Rule
 from costeer.plant import world
+from costeer.plant.alignment import Bend, bend_at
 from costeer.plant.parameters import RoadParameters, holding_stiffness
 from costeer.plant.road import cruising_lane, lane_centre
 from costeer.plant.steering import ColumnState
@@ -86,12 +87,14 @@ class PersonHeld(NamedTuple):
         grip: Of the virtual hands [-].
         torque_command: Asked of the guidance motor [N·m].
         drive_command: Asked by the pedals [m/s²].
+        bend: Of the road near the car.
     """
 
     intended_angle: Real
     grip: Real
     torque_command: Real
     drive_command: Real
+    bend: Bend = Bend()
 
 
 @compiled
@@ -150,6 +153,9 @@ def sense(
         motion.plant.world,
         driver_torque(parameters, motion, has_wheel),
         HeadTracker(head_yaw=given.head_yaw, valid=given.head_yaw_valid),
+        bend_at(
+            parameters.alignment, motion.plant.world.vehicle.longitudinal_position
+        ),
     )
 
 
@@ -209,6 +215,7 @@ def control(
         grip=given.grip,
         torque_command=state.torque_command,
         drive_command=drive_command(parameters.car, given.accelerator, given.brake),
+        bend=bend_of(measurement),
     )
     return new_state, held, sample
 
@@ -249,5 +256,6 @@ def hands_step(
         torque_command=held.torque_command,
         drive_command=held.drive_command,
         dt=DT / parameters.plant_steps,
+        bend=held.bend,
     )
     return motion._replace(plant=plant_step(motion.plant, fixed))

@@ -90,6 +90,7 @@ def wheel_step(
         car=car,
         road_wheel_angle=middle / car.steering_ratio,
         drive_command=held.drive_command,
+        bend=held.bend,
     )
     moved = WorldState(
         vehicle=rk4(vehicle_rate, state.vehicle, vehicle_input, dt),

@@ -33,6 +33,7 @@ from costeer.loop.half_step import (
 from costeer.loop.parameters import DT, LoopParameters
 from costeer.methods.interface import Rule
 from costeer.plant import world
+from costeer.plant.alignment import Bend, bend_at
 from costeer.plant.parameters import CarParameters, ColumnParameters
 from costeer.plant.road import cruising_lane, lane_centre
 from costeer.plant.vehicle import drive_command
@@ -111,6 +112,7 @@ def sense(parameters: LoopParameters[Any], state: LoopState[S]) -> Measurement:
         state.world,
         state.arm.torque,
         state.head,
+        bend_at(parameters.alignment, state.world.vehicle.longitudinal_position),
     )
 
 
@@ -132,6 +134,7 @@ class PlantHeld(NamedTuple):
     torque_command: Real
     drive_command: Real
     dt: Real
+    bend: Bend
 
 
 @compiled
@@ -144,6 +147,7 @@ def plant_step(motion: PlantMotion, held: PlantHeld) -> PlantMotion:
         driver_torque=muscles,
         torque_command=held.torque_command,
         drive_command=held.drive_command,
+        bend=held.bend,
     )
     moved = world.step(held.car, held.column, motion.world, inputs, held.dt)
     return PlantMotion(world=moved, arm=moved_arm, muscles=motion.muscles + muscles)
@@ -169,12 +173,18 @@ def _felt_torque(
 
 @compiled
 def move(
-    parameters: LoopParameters[Any], state: LoopState[S], action: Action
+    parameters: LoopParameters[Any], state: LoopState[S], action: Action, bend: Bend
 ) -> tuple[WorldState, ArmState]:
     """Run plant and arms through one control step.
 
     The arms move with the wheel, so their inertia and damping are part of the column
     while the hands hold it.
+
+    Args:
+        parameters: Of the trial.
+        state: Of everything.
+        action: Of the driver.
+        bend: Of the road at the car.
     """
     hands = parameters.driver.arm
     held = PlantHeld(
@@ -187,12 +197,23 @@ def move(
             parameters.car, action.pedals.accelerator, action.pedals.brake
         ),
         dt=DT / parameters.plant_steps,
+        bend=bend,
     )
     start = PlantMotion(world=state.world, arm=state.arm, muscles=0.0)
     motion = repeat(plant_step, parameters.plant_steps, start, held)
     moved = motion.arm
     return motion.world, moved._replace(
         torque=_felt_torque(parameters, state.world, motion, action)
+    )
+
+
+@compiled
+def bend_of(measurement: Measurement) -> Bend:
+    """The road at the car, as it was measured."""
+    return Bend(
+        station=measurement.longitudinal_position,
+        curvature=measurement.road_curvature,
+        slope=measurement.road_curvature_slope,
     )
 
 
@@ -206,7 +227,10 @@ def drive(
 ) -> tuple[Any, Action]:
     """What the driver does at this step."""
     knowledge = Knowledge(
-        car=parameters.car, column=parameters.column, road=parameters.road
+        car=parameters.car,
+        column=parameters.column,
+        road=parameters.road,
+        alignment=parameters.alignment,
     )
     perception = Perception(
         measurement=measurement,
@@ -268,7 +292,7 @@ def step(
     control, sample = half_step(
         rules.method, parameters, state.control, measurement, request, seat
     )
-    moved_world, moved_arm = move(parameters, state, action)
+    moved_world, moved_arm = move(parameters, state, action, bend_of(measurement))
     return LoopState(
         world=moved_world,
         control=control,

@@ -1,4 +1,9 @@
-"""Single-track car: lateral velocity, yaw rate, position; speed from the pedals."""
+"""Single-track car: lateral velocity, yaw rate, position; speed from the pedals.
+
+The car moves in the road's own coordinates (curvilinear): along the reference line,
+across it, and yaw against it. With the curvature kappa of that line at the car,
+s' = v_along / (1 - kappa y), y' = v_across and psi' = r - kappa s'.
+"""
 
 from __future__ import annotations
 
@@ -6,6 +11,7 @@ from typing import NamedTuple
 
 from costeer.base import array as xp
 from costeer.base.array import Real, compiled
+from costeer.plant.alignment import Bend
 from costeer.plant.parameters import GRAVITY, CarParameters, wheelbase
 from costeer.plant.tyre import lateral_force
 
@@ -42,11 +48,13 @@ class VehicleInput(NamedTuple):
         car: Its parameters.
         road_wheel_angle: At the front wheels [rad].
         drive_command: Acceleration asked for by the pedals [m/s²].
+        bend: Of the road near the car.
     """
 
     car: CarParameters
     road_wheel_angle: Real
     drive_command: Real
+    bend: Bend = Bend()
 
 
 @compiled
@@ -161,10 +169,16 @@ def vehicle_rate(state: VehicleState, motion: VehicleInput) -> VehicleState:
     cosine, sine = xp.cos(state.yaw_angle), xp.sin(state.yaw_angle)
     forward, left = state.longitudinal_velocity, state.lateral_velocity
     along = push + state.yaw_rate * left
+    bend = motion.bend
+    moved = state.longitudinal_position - bend.station
+    curvature = bend.curvature + bend.slope * moved
+    progress = (forward * cosine - left * sine) / (
+        1.0 - curvature * state.lateral_position
+    )
     return VehicleState(
-        longitudinal_position=forward * cosine - left * sine,
+        longitudinal_position=progress,
         lateral_position=forward * sine + left * cosine,
-        yaw_angle=state.yaw_rate,
+        yaw_angle=state.yaw_rate - curvature * progress,
         longitudinal_velocity=xp.select((forward > 0.0) | (along > 0.0), along, 0.0),
         lateral_velocity=pull - state.yaw_rate * forward,
         yaw_rate=moment / car.yaw_inertia,

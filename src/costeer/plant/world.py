@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 from costeer.base.array import Real, compiled
 from costeer.base.integrate import rk4
+from costeer.plant.alignment import Bend
 from costeer.plant.parameters import CarParameters, ColumnParameters
 from costeer.plant.steering import (
     ColumnState,
@@ -41,11 +42,13 @@ class Inputs(NamedTuple):
         driver_torque: Of the driver's hands [N·m].
         torque_command: Asked of the guidance motor [N·m].
         drive_command: Acceleration asked for by the pedals [m/s²].
+        bend: Of the road near the car.
     """
 
     driver_torque: Real
     torque_command: Real
     drive_command: Real
+    bend: Bend = Bend()
 
 
 @compiled
@@ -124,6 +127,7 @@ def step(
         car=car,
         road_wheel_angle=half_way / car.steering_ratio,
         drive_command=inputs.drive_command,
+        bend=inputs.bend,
     )
     return WorldState(
         vehicle=rk4(vehicle_rate, state.vehicle, motion, dt), column=wheel

@@ -30,6 +30,9 @@ class Measurement(NamedTuple):
         lane: That the car is in, counted from the right [-].
         side: Of the adjacent lane, -1 right, +1 left [-].
         distance_to_adjacent_lane: To the line shared with that lane [m].
+        road_curvature: Of the road's reference line, the left lane's centre, at the
+            car; left positive [1/m].
+        road_curvature_slope: Its change along the road [1/m²].
     """
 
     longitudinal_position: Real
@@ -49,6 +52,8 @@ class Measurement(NamedTuple):
     lane: Real
     side: Real
     distance_to_adjacent_lane: Real
+    road_curvature: Real = 0.0
+    road_curvature_slope: Real = 0.0
 
 
 def standing_start(road: RoadParameters) -> Measurement:

@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 from costeer.base import array as xp
 from costeer.base.array import Flag, Real, compiled
+from costeer.plant.alignment import Bend
 from costeer.plant.parameters import CarParameters, RoadParameters
 from costeer.plant.road import adjacent_side, distance_to_adjacent_lane, lane_at
 from costeer.plant.vehicle import (
@@ -124,6 +125,7 @@ def measure(
     world: WorldState,
     driver_torque: Real,
     head: HeadTracker,
+    bend: Bend = Bend(),
 ) -> Measurement:
     """One sample of all sensors.
 
@@ -133,6 +135,7 @@ def measure(
         world: As it is now.
         driver_torque: At the wheel now [N·m].
         head: What the tracker says; an angle that is not finite is not valid.
+        bend: Of the road at the car.
     """
     vehicle, wheel = world.vehicle, world.column
     road_wheel_angle = wheel.steering_wheel_angle / car.steering_ratio
@@ -171,4 +174,6 @@ def measure(
         distance_to_adjacent_lane=distance_to_adjacent_lane(
             road, vehicle.lateral_position, lane, side
         ),
+        road_curvature=bend.curvature,
+        road_curvature_slope=bend.slope,
     )
