@@ -134,6 +134,11 @@ def isfinite(x: Real) -> Flag:
     return cast("Flag", _numpy_like(x).isfinite(x))
 
 
+def absolute(x: Real) -> Real:
+    """`x` without its sign."""
+    return select(x < 0.0, -x, x)
+
+
 def minimum(a: Real, b: Real) -> Real:
     """Smaller of the two."""
     return select(a < b, a, b)
@@ -232,6 +237,11 @@ for _function, _target in _MATH.items():
 @overload(floor, strict=False)
 def _floor(x: Any) -> Any:
     return lambda x: np.floor(x)
+
+
+@overload(absolute, strict=False)
+def _absolute(x: Any) -> Any:
+    return lambda x: abs(x)
 
 
 @overload(minimum, strict=False)

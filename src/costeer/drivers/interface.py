@@ -16,6 +16,7 @@ from costeer.base.sources import source_hash
 from costeer.drivers.arm import ArmCommand
 from costeer.drivers.longitudinal import Pedals
 from costeer.plant.alignment import STRAIGHT, Alignment
+from costeer.plant.fleet import Neighbours
 from costeer.plant.parameters import CarParameters, ColumnParameters, RoadParameters
 from costeer.plant.traffic import LeaderState
 from costeer.sensing.measurement import Measurement
@@ -47,11 +48,13 @@ class Perception(NamedTuple):
         measurement: Motion of the car, as seen and felt.
         leader: The car ahead.
         guidance_torque: At the wheel, felt by the hands [N·m].
+        around: The cars about the own one, and a lane change that is asked for.
     """
 
     measurement: Measurement
     leader: LeaderState
     guidance_torque: Real
+    around: Neighbours = Neighbours()
 
 
 class DriverNoise(NamedTuple):

@@ -7,8 +7,29 @@ from typing import NamedTuple
 
 from costeer.base import array as xp
 from costeer.base.array import Flag, Real, compiled
-from costeer.plant.parameters import RoadParameters
-from costeer.plant.road import cruising_lane
+from costeer.plant.alignment import Bend
+from costeer.plant.fleet import (
+    Car,
+    Fleet,
+    FleetParameters,
+    Spot,
+    initial_fleet,
+    outlook,
+    with_ego,
+)
+from costeer.plant.following import LONGEST_GAP, Ahead
+from costeer.plant.parameters import CarParameters, RoadParameters
+from costeer.plant.place import (
+    BARRIER,
+    CAR,
+    NO_CONTACT,
+    STRIP,
+    Place,
+    beyond_line,
+    ground_contact,
+)
+from costeer.plant.road import cruising_lane, lane_centre
+from costeer.plant.stretches import Stretches, side_force, stretch_at
 from costeer.plant.traffic import (
     LeaderState,
     TrafficParameters,
@@ -21,21 +42,30 @@ from costeer.sensing.measurement import Measurement
 
 
 class EventState(NamedTuple):
-    """The leader and the event it belongs to.
+    """What happens on the road: the leader and its event, other cars, contacts.
 
     Attributes:
-        leader: The car ahead.
+        leader: The car to overtake.
         event: 0 outside an event zone, else the number of the event [-].
+        fleet: The other cars.
+        contact: What the car touches, `NO_CONTACT` to `CAR` [-]; what stops it stays.
     """
 
     leader: LeaderState
     event: Real
+    fleet: Fleet
+    contact: Real
 
 
 @compiled
-def initial_events() -> EventState:
-    """An empty road."""
-    return EventState(leader=no_leader(), event=0.0)
+def initial_events(fleet: FleetParameters) -> EventState:
+    """The road before the first step; no car has appeared."""
+    return EventState(
+        leader=no_leader(),
+        event=0.0,
+        fleet=initial_fleet(fleet),
+        contact=NO_CONTACT,
+    )
 
 
 @compiled
@@ -99,7 +129,128 @@ def step_events(
         leader_uniform,
     )
     leader = xp.select(appears, new, drive_on(state.leader, dt))
-    return EventState(leader=leader, event=event)
+    return state._replace(leader=leader, event=event)
+
+
+@compiled
+def with_car(state: EventState, measurement: Measurement) -> EventState:
+    """The road with the driven car where it has been measured."""
+    speed = measurement.longitudinal_velocity
+    ego = Car(
+        present=1.0,
+        position=measurement.longitudinal_position,
+        lateral=measurement.lateral_position,
+        velocity=speed,
+        acceleration=measurement.longitudinal_acceleration,
+        lane=measurement.lane,
+        origin=measurement.lateral_position,
+        desired=speed,
+    )
+    return state._replace(fleet=with_ego(state.fleet, ego))
+
+
+@compiled
+def hits_car(
+    fleet: FleetParameters, state: EventState, car: CarParameters, ego: Car
+) -> Flag:
+    """Whether the driven car and another one are in one place.
+
+    Args:
+        fleet: Sizes of the cars.
+        state: Where they are.
+        car: The driven one.
+        ego: Where it is.
+    """
+    path = Spot(0, ego.position, ego.lateral, car.width / 2.0)
+    near = outlook(fleet, state.fleet, path)
+    return (near.ahead.gap <= 0.0) | (near.behind.gap <= 0.0)
+
+
+@compiled
+def hits_leader(
+    road: RoadParameters, leader: LeaderState, car: CarParameters, ego: Car
+) -> Flag:
+    """Whether the driven car and the leader are in one place."""
+    along = xp.absolute(leader.longitudinal_position - ego.position)
+    beside = xp.absolute(lane_centre(road, leader.lane) - ego.lateral)
+    return leader.present & (along < car.length) & (beside < car.width)
+
+
+@compiled
+def contact_of(
+    fleet: FleetParameters,
+    road: RoadParameters,
+    car: CarParameters,
+    state: EventState,
+    measurement: Measurement,
+) -> Real:
+    """What the car touches now, `NO_CONTACT` to `CAR` [-]; a collision stays.
+
+    Args:
+        fleet: Sizes of the cars.
+        road: Lanes, shoulder.
+        car: The driven one.
+        state: Where all cars are.
+        measurement: Of the driven one.
+    """
+    beyond = beyond_line(road, measurement.lateral_position, car.width)
+    ground = ground_contact(road, beyond)
+    ego = Car(
+        position=measurement.longitudinal_position,
+        lateral=measurement.lateral_position,
+    )
+    hit = hits_car(fleet, state, car, ego) | hits_leader(road, state.leader, car, ego)
+    now = xp.select(hit, CAR, ground)
+    return xp.select(state.contact >= BARRIER, state.contact, now)
+
+
+@compiled
+def place_of(
+    road: RoadParameters,
+    along: Stretches,
+    state: EventState,
+    measurement: Measurement,
+) -> Place:
+    """What the road does to the car where it is.
+
+    Args:
+        road: Its strips.
+        along: What happens on it.
+        state: With the contact.
+        measurement: Where the car is and how the road bends there.
+    """
+    position = measurement.longitudinal_position
+    stretch, lasts = stretch_at(along, position)
+    middle = lane_centre(road, (road.num_lanes - 1.0) / 2.0)
+    left = measurement.lateral_position > middle
+    torque = xp.select(left, road.rumble, -road.rumble)
+    return Place(
+        bend=Bend(
+            station=position,
+            curvature=measurement.road_curvature,
+            slope=measurement.road_curvature_slope,
+        ),
+        side_force=side_force(stretch, lasts, position),
+        rumble=xp.select(state.contact == STRIP, torque, 0.0),
+        stopped=state.contact >= BARRIER,
+    )
+
+
+@compiled
+def as_leader(ahead: Ahead, measurement: Measurement) -> LeaderState:
+    """The next car in the way, as a driver takes it for a leader.
+
+    Args:
+        ahead: Of the driven car.
+        measurement: Of the driven car.
+    """
+    seen = ahead.gap < LONGEST_GAP
+    return no_leader()._replace(
+        present=seen,
+        longitudinal_position=measurement.longitudinal_position + ahead.gap,
+        longitudinal_velocity=ahead.velocity,
+        lane=measurement.lane,
+    )
 
 
 @compiled

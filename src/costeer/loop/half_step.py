@@ -13,9 +13,17 @@ from costeer.base import array as xp
 from costeer.base.array import Real, inlined
 from costeer.controller.signals import Assistance, Request
 from costeer.drivers.interface import Action
-from costeer.loop.events import EventState, Lead, initial_events, lead_of, step_events
+from costeer.loop.events import (
+    EventState,
+    Lead,
+    contact_of,
+    initial_events,
+    lead_of,
+    step_events,
+)
 from costeer.loop.parameters import DT, LoopParameters
 from costeer.methods.interface import Rule
+from costeer.plant.fleet_motion import World, moved
 from costeer.plant.road import cruising_lane
 from costeer.sensing.measurement import Measurement
 
@@ -92,7 +100,7 @@ def initial_control(
     lane = cruising_lane(parameters.road)
     return ControlState(
         method=rule.initial_state(parameters.controller, lane),
-        events=initial_events(),
+        events=initial_events(parameters.fleet),
         torque_command=0.0,
         time=0.0,
     )
@@ -132,7 +140,7 @@ def half_step(
     request: Request,
     seat: Seat,
 ) -> tuple[ControlState[S], Sample[S]]:
-    """One control step of method and road.
+    """One control step of method and road; the car has been put into the fleet before.
 
     Args:
         rule: The method's functions.
@@ -145,6 +153,14 @@ def half_step(
     Returns:
         The new state, whose torque command acts in the next step, and the sample.
     """
+    contact = contact_of(
+        parameters.fleet,
+        parameters.road,
+        parameters.car,
+        state.events,
+        measurement,
+    )
+    now = state.events._replace(contact=contact)
     method_state, signals = rule.step(
         parameters.controller, state.method, measurement, request, DT
     )
@@ -158,18 +174,22 @@ def half_step(
         torque_fault=fault_of(signals.applied_torque, limit),
         motor_torque=seat.motor_torque,
         action=seat.action,
-        events=state.events,
-        lead=lead_of(state.events, measurement.longitudinal_position),
+        events=now,
+        lead=lead_of(now, measurement.longitudinal_position),
     )
     events = step_events(
         parameters.traffic,
         parameters.road,
-        state.events,
+        now,
         measurement,
         seat.action.at_home,
         xp.select(parameters.start.events > 0.5, seat.leader_uniform, -1.0),
         DT,
     )
+    around = World(
+        road=parameters.road, law=parameters.following, time=state.time, dt=DT
+    )
+    events = events._replace(fleet=moved(parameters.fleet, events.fleet, around))
     return ControlState(
         method=method_state,
         events=events,

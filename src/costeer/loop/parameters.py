@@ -7,7 +7,10 @@ from typing import Any, Generic, NamedTuple, TypeVar
 from costeer.base.array import Real
 from costeer.drivers.driver import DriverParameters
 from costeer.plant.alignment import STRAIGHT, Alignment
+from costeer.plant.fleet import NO_FLEET, FleetParameters
+from costeer.plant.following import FollowingParameters
 from costeer.plant.parameters import CarParameters, ColumnParameters, RoadParameters
+from costeer.plant.stretches import NOTHING_HAPPENS, Stretches
 from costeer.plant.traffic import TrafficParameters
 from costeer.sensing.sensors import SensorParameters
 
@@ -50,7 +53,10 @@ class LoopParameters(NamedTuple, Generic[P]):
             the method.
         plant_steps: Plant steps in a control step [-]. Source: assumed, 8 make 480
             Hz.
+        following: How other cars drive [SI units]. Source: plant/following.py.
         alignment: How the road runs [SI units]. Source: the scenario.
+        fleet: The other cars [SI units]. Source: the scenario.
+        stretches: What happens along the road [SI units]. Source: the scenario.
     """
 
     controller: P
@@ -64,4 +70,7 @@ class LoopParameters(NamedTuple, Generic[P]):
     follows_plan: Real = 0.0
     assists: Real = 1.0
     plant_steps: int = 8
+    following: FollowingParameters = FollowingParameters()
     alignment: Alignment = STRAIGHT
+    fleet: FleetParameters = NO_FLEET
+    stretches: Stretches = NOTHING_HAPPENS

@@ -21,13 +21,15 @@ from costeer.drivers import arm
 from costeer.drivers.arm import ArmCommand, ArmParameters
 from costeer.drivers.interface import Action
 from costeer.drivers.longitudinal import Pedals
+from costeer.loop.events import place_of, with_car
 from costeer.loop.half_step import ControlState, Sample, Seat, half_step
 from costeer.loop.parameters import DT, LoopParameters
-from costeer.loop.step import PlantHeld, PlantMotion, bend_of, plant_step
+from costeer.loop.step import PlantHeld, PlantMotion, plant_step, seen_head
 from costeer.methods.interface import Rule
 from costeer.plant import world
-from costeer.plant.alignment import Bend, bend_at
+from costeer.plant.alignment import bend_at
 from costeer.plant.parameters import RoadParameters, holding_stiffness
+from costeer.plant.place import Place
 from costeer.plant.road import cruising_lane, lane_centre
 from costeer.plant.steering import ColumnState
 from costeer.plant.vehicle import drive_command
@@ -87,14 +89,14 @@ class PersonHeld(NamedTuple):
         grip: Of the virtual hands [-].
         torque_command: Asked of the guidance motor [N·m].
         drive_command: Asked by the pedals [m/s²].
-        bend: Of the road near the car.
+        place: What the road does to the car.
     """
 
     intended_angle: Real
     grip: Real
     torque_command: Real
     drive_command: Real
-    bend: Bend = Bend()
+    place: Place = Place()
 
 
 @compiled
@@ -147,15 +149,15 @@ def sense(
     has_wheel: Flag,
 ) -> Measurement:
     """This step's sample of everything that is measured."""
+    position = motion.plant.world.vehicle.longitudinal_position
+    head = HeadTracker(head_yaw=given.head_yaw, valid=given.head_yaw_valid)
     return measure(
         parameters.car,
         parameters.road,
         motion.plant.world,
         driver_torque(parameters, motion, has_wheel),
-        HeadTracker(head_yaw=given.head_yaw, valid=given.head_yaw_valid),
-        bend_at(
-            parameters.alignment, motion.plant.world.vehicle.longitudinal_position
-        ),
+        seen_head(parameters, position, head),
+        bend_at(parameters.alignment, position),
     )
 
 
@@ -208,6 +210,7 @@ def control(
         requested=given.requested,
         change_duration=math.nan,
     )
+    state = state._replace(events=with_car(state.events, measurement))
     seat = seated(parameters, motion, given, measurement)
     new_state, sample = half_step(rule, parameters, state, measurement, request, seat)
     held = PersonHeld(
@@ -215,7 +218,9 @@ def control(
         grip=given.grip,
         torque_command=state.torque_command,
         drive_command=drive_command(parameters.car, given.accelerator, given.brake),
-        bend=bend_of(measurement),
+        place=place_of(
+            parameters.road, parameters.stretches, sample.events, measurement
+        ),
     )
     return new_state, held, sample
 
@@ -256,6 +261,6 @@ def hands_step(
         torque_command=held.torque_command,
         drive_command=held.drive_command,
         dt=DT / parameters.plant_steps,
-        bend=held.bend,
+        place=held.place,
     )
     return motion._replace(plant=plant_step(motion.plant, fixed))

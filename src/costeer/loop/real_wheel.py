@@ -10,12 +10,12 @@ from typing import Any, NamedTuple
 
 from costeer.base import array as xp
 from costeer.base.array import Real, compiled
-from costeer.base.integrate import rk4
 from costeer.loop.parameters import DT, LoopParameters
 from costeer.loop.person import PersonHeld, PersonMotion
 from costeer.plant.parameters import CarParameters, ColumnParameters
+from costeer.plant.place import rumble_torque
 from costeer.plant.steering import ColumnState, aligning_torque, motor_torque
-from costeer.plant.vehicle import VehicleInput, front_lateral_force, vehicle_rate
+from costeer.plant.vehicle import VehicleInput, driven, front_lateral_force
 from costeer.plant.world import WorldState
 
 
@@ -90,10 +90,10 @@ def wheel_step(
         car=car,
         road_wheel_angle=middle / car.steering_ratio,
         drive_command=held.drive_command,
-        bend=held.bend,
+        place=held.place,
     )
     moved = WorldState(
-        vehicle=rk4(vehicle_rate, state.vehicle, vehicle_input, dt),
+        vehicle=driven(state.vehicle, vehicle_input, dt),
         column=ColumnState(
             steering_wheel_angle=wheel.steering_wheel_angle,
             steering_wheel_rate=wheel.steering_wheel_rate,
@@ -104,5 +104,7 @@ def wheel_step(
     )
     muscles = motion.plant.muscles + wheel.driver_torque
     plant = motion.plant._replace(world=moved, muscles=muscles)
-    torque = rendered_torque(car, column, moved, wheel)
+    torque = rendered_torque(car, column, moved, wheel) + rumble_torque(
+        held.place, moved.vehicle.longitudinal_position
+    )
     return motion._replace(plant=plant), torque

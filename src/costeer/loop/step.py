@@ -23,6 +23,7 @@ from costeer.drivers.interface import (
     Perception,
     Plan,
 )
+from costeer.loop.events import as_leader, place_of, with_car
 from costeer.loop.half_step import (
     ControlState,
     Sample,
@@ -33,9 +34,12 @@ from costeer.loop.half_step import (
 from costeer.loop.parameters import DT, LoopParameters
 from costeer.methods.interface import Rule
 from costeer.plant import world
-from costeer.plant.alignment import Bend, bend_at
+from costeer.plant.alignment import bend_at
+from costeer.plant.fleet import neighbours
 from costeer.plant.parameters import CarParameters, ColumnParameters
+from costeer.plant.place import NOWHERE, Place
 from costeer.plant.road import cruising_lane, lane_centre
+from costeer.plant.stretches import stretch_at
 from costeer.plant.vehicle import drive_command
 from costeer.plant.world import Inputs, WorldState
 from costeer.sensing.measurement import Measurement
@@ -104,15 +108,26 @@ def initial_state(
 
 
 @compiled
+def seen_head(
+    parameters: LoopParameters[Any], position: Real, head: HeadTracker
+) -> HeadTracker:
+    """What the tracker says at a position along the road [m], if it is not lost."""
+    stretch, lasts = stretch_at(parameters.stretches, position)
+    lost = lasts & (stretch.head_lost > 0.5)
+    return head._replace(valid=head.valid & xp.logical_not(lost))
+
+
+@compiled
 def sense(parameters: LoopParameters[Any], state: LoopState[S]) -> Measurement:
     """This step's sample of everything that is measured."""
+    position = state.world.vehicle.longitudinal_position
     return measure(
         parameters.car,
         parameters.road,
         state.world,
         state.arm.torque,
-        state.head,
-        bend_at(parameters.alignment, state.world.vehicle.longitudinal_position),
+        seen_head(parameters, position, state.head),
+        bend_at(parameters.alignment, position),
     )
 
 
@@ -134,7 +149,7 @@ class PlantHeld(NamedTuple):
     torque_command: Real
     drive_command: Real
     dt: Real
-    bend: Bend
+    place: Place
 
 
 @compiled
@@ -147,7 +162,7 @@ def plant_step(motion: PlantMotion, held: PlantHeld) -> PlantMotion:
         driver_torque=muscles,
         torque_command=held.torque_command,
         drive_command=held.drive_command,
-        bend=held.bend,
+        place=held.place,
     )
     moved = world.step(held.car, held.column, motion.world, inputs, held.dt)
     return PlantMotion(world=moved, arm=moved_arm, muscles=motion.muscles + muscles)
@@ -173,7 +188,10 @@ def _felt_torque(
 
 @compiled
 def move(
-    parameters: LoopParameters[Any], state: LoopState[S], action: Action, bend: Bend
+    parameters: LoopParameters[Any],
+    state: LoopState[S],
+    action: Action,
+    place: Place = NOWHERE,
 ) -> tuple[WorldState, ArmState]:
     """Run plant and arms through one control step.
 
@@ -184,7 +202,7 @@ def move(
         parameters: Of the trial.
         state: Of everything.
         action: Of the driver.
-        bend: Of the road at the car.
+        place: What the road does to the car.
     """
     hands = parameters.driver.arm
     held = PlantHeld(
@@ -197,23 +215,13 @@ def move(
             parameters.car, action.pedals.accelerator, action.pedals.brake
         ),
         dt=DT / parameters.plant_steps,
-        bend=bend,
+        place=place,
     )
     start = PlantMotion(world=state.world, arm=state.arm, muscles=0.0)
     motion = repeat(plant_step, parameters.plant_steps, start, held)
     moved = motion.arm
     return motion.world, moved._replace(
         torque=_felt_torque(parameters, state.world, motion, action)
-    )
-
-
-@compiled
-def bend_of(measurement: Measurement) -> Bend:
-    """The road at the car, as it was measured."""
-    return Bend(
-        station=measurement.longitudinal_position,
-        curvature=measurement.road_curvature,
-        slope=measurement.road_curvature_slope,
     )
 
 
@@ -232,10 +240,21 @@ def drive(
         road=parameters.road,
         alignment=parameters.alignment,
     )
+    events = state.control.events
+    stretch, lasts = stretch_at(parameters.stretches, measurement.longitudinal_position)
+    around = neighbours(
+        parameters.fleet,
+        events.fleet,
+        parameters.road,
+        measurement.lane,
+        xp.select(lasts, stretch.wanted_side, 0.0),
+    )
+    ahead = as_leader(around.own.ahead, measurement)
     perception = Perception(
         measurement=measurement,
-        leader=state.control.events.leader,
+        leader=xp.select(events.leader.present, events.leader, ahead),
         guidance_torque=state.world.column.motor_torque,
+        around=around,
     )
     return law.act(parameters.driver, state.driver, knowledge, perception, noise, DT)
 
@@ -283,6 +302,8 @@ def step(
         request: Verdict of the predictor and what is asked for from outside.
         noise: Random numbers of this step.
     """
+    events = with_car(state.control.events, measurement)
+    state = state._replace(control=state.control._replace(events=events))
     driver, action = drive(rules.driver, parameters, state, measurement, noise)
     seat = Seat(
         action=action,
@@ -292,7 +313,8 @@ def step(
     control, sample = half_step(
         rules.method, parameters, state.control, measurement, request, seat
     )
-    moved_world, moved_arm = move(parameters, state, action, bend_of(measurement))
+    place = place_of(parameters.road, parameters.stretches, sample.events, measurement)
+    moved_world, moved_arm = move(parameters, state, action, place)
     return LoopState(
         world=moved_world,
         control=control,

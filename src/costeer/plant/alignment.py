@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from costeer.base import array as xp
 from costeer.base.array import Real, compiled
-from costeer.base.lookup import element, interval
+from costeer.base.lookup import interval, rows_of
 
 MOST_STATIONS = 256
 """Stations that a road may have; compiled code knows the size of its tables."""
@@ -26,19 +26,33 @@ class Alignment(NamedTuple):
     """Stations of a road, and what follows from them.
 
     Attributes:
-        count: Stations in use [-].
-        stations: Where each lies along the road, shape `(256,)`; infinite beyond
-            `count` [m].
-        curvature: At each station [1/m].
+        num_stations: Stations in use [-].
+        table: A `Station` in each row, shape `(256 * 4,)`; beyond `num_stations` they lie at
+            infinity.
+    """
+
+    num_stations: Real
+    table: NDArray[np.float64]
+
+
+class Station(NamedTuple):
+    """A place from which on the curvature changes by another slope.
+
+    Attributes:
+        position: Along the road [m].
+        curvature: There [1/m].
         slope: Change of the curvature along the road after it [1/m²].
         heading: Direction of the road there, 0 at the first [rad].
     """
 
-    count: Real
-    stations: NDArray[np.float64]
-    curvature: NDArray[np.float64]
-    slope: NDArray[np.float64]
-    heading: NDArray[np.float64]
+    position: Real
+    curvature: Real
+    slope: Real
+    heading: Real
+
+
+_ROWS = rows_of(Station(0.0, 0.0, 0.0, 0.0))
+_read_station, _WIDTH = _ROWS.read, _ROWS.width
 
 
 class Bend(NamedTuple):
@@ -55,6 +69,10 @@ class Bend(NamedTuple):
     slope: Real = 0.0
 
 
+NO_BEND = Bend()
+"""A straight stretch of road."""
+
+
 def alignment(stations: Sequence[float], curvatures: Sequence[float]) -> Alignment:
     """A road through stations; before the first and after the last nothing changes.
 
@@ -68,8 +86,8 @@ def alignment(stations: Sequence[float], curvatures: Sequence[float]) -> Alignme
     count = max(len(stations), 1)
     if count > MOST_STATIONS:
         raise ValueError(f"a road has {count} stations; give at most {MOST_STATIONS}")
-    tables = np.zeros((4, MOST_STATIONS))
-    places, bends, slopes, headings = tables
+    table = np.zeros((MOST_STATIONS, _WIDTH))
+    places, bends, slopes, headings = table.T
     places[1:] = np.inf
     if len(stations):
         places[:count], bends[:count] = stations, curvatures
@@ -83,7 +101,7 @@ def alignment(stations: Sequence[float], curvatures: Sequence[float]) -> Alignme
     slopes[: count - 1] = np.diff(bends[:count]) / steps
     means = (bends[: count - 1] + bends[1:count]) / 2.0
     headings[1:count] = np.cumsum(means * steps)
-    return Alignment(float(count), places, bends, slopes, headings)
+    return Alignment(float(count), table.ravel())
 
 
 STRAIGHT = alignment((), ())
@@ -91,35 +109,33 @@ STRAIGHT = alignment((), ())
 
 
 @compiled
-def _station_before(road: Alignment, position: Real) -> tuple[int, Real]:
-    """Number of the station that a position follows, and the distance from it [m].
+def _station_before(road: Alignment, position: Real) -> tuple[Station, Real]:
+    """The station that a position follows, and the distance from it [m].
 
     Before the first station the road is as there: the distance is none.
     """
-    index = interval(road.stations, road.count, position)
-    beyond = position - element(road.stations, index)
-    return index, xp.maximum(beyond, 0.0)
+    index = interval(road.table, _WIDTH, road.num_stations, position)
+    station: Station = _read_station(road.table, index)
+    return station, xp.maximum(position - station.position, 0.0)
 
 
 @compiled
 def bend_at(road: Alignment, position: Real) -> Bend:
     """Curvature of the reference line near a position along the road [m]."""
-    index, beyond = _station_before(road, position)
-    slope = element(road.slope, index)
+    before, beyond = _station_before(road, position)
     return Bend(
         station=position,
-        curvature=element(road.curvature, index) + slope * beyond,
-        slope=slope,
+        curvature=before.curvature + before.slope * beyond,
+        slope=before.slope,
     )
 
 
 @compiled
 def road_heading(road: Alignment, position: Real) -> Real:
     """Direction of the reference line at a position [rad], 0 at the first station."""
-    index, beyond = _station_before(road, position)
-    curvature, slope = element(road.curvature, index), element(road.slope, index)
-    turned = (curvature + slope * beyond / 2.0) * beyond
-    return element(road.heading, index) + turned
+    before, beyond = _station_before(road, position)
+    turned = (before.curvature + before.slope * beyond / 2.0) * beyond
+    return before.heading + turned
 
 
 @compiled

@@ -34,6 +34,7 @@ class CarParameters(NamedTuple):
         air_resistance: Deceleration over speed squared [1/m]. Source: assumed,
             0.5 · 1.2 kg/m³ · 0.7 m² / 1500 kg.
         powertrain_lag: Pedal to acceleration [s]. Source: assumed.
+        length: Over all, for collisions [m]. Source: assumed.
     """
 
     mass: Real = 1500.0
@@ -51,6 +52,7 @@ class CarParameters(NamedTuple):
     rolling_resistance: Real = 0.1
     air_resistance: Real = 2.8e-4
     powertrain_lag: Real = 0.3
+    length: Real = 4.5
 
 
 class ColumnParameters(NamedTuple):
@@ -76,7 +78,7 @@ class ColumnParameters(NamedTuple):
 
 
 class RoadParameters(NamedTuple):
-    """Straight road with parallel lanes of one direction.
+    """Parallel lanes of one direction.
 
     Attributes:
         lane_width: d [m]. Source: paper, expressway.
@@ -84,12 +86,17 @@ class RoadParameters(NamedTuple):
         length: Of the course [m]. Source: paper, Sec. III.
         overtaking_side: Direction of the overtaking lane, -1 right under left-hand
             traffic, +1 left under right-hand traffic [-]. Source: paper, Japan.
+        shoulder: From the outer lines to the barriers [m]. Source: assumed.
+        rumble: Largest torque of the strips outside the outer lines at the wheel
+            [N·m]. Source: assumed, felt and not steering.
     """
 
     lane_width: Real = 3.5
     num_lanes: Real = 2.0
     length: Real = 8000.0
     overtaking_side: Real = -1.0
+    shoulder: Real = 2.5
+    rumble: Real = 0.6
 
 
 DEFAULT_CAR = CarParameters()

@@ -11,8 +11,9 @@ from typing import NamedTuple
 
 from costeer.base import array as xp
 from costeer.base.array import Real, compiled
-from costeer.plant.alignment import Bend
+from costeer.base.integrate import rk4
 from costeer.plant.parameters import GRAVITY, CarParameters, wheelbase
+from costeer.plant.place import Place
 from costeer.plant.tyre import lateral_force
 
 _SLOWEST = 1.0
@@ -48,13 +49,13 @@ class VehicleInput(NamedTuple):
         car: Its parameters.
         road_wheel_angle: At the front wheels [rad].
         drive_command: Acceleration asked for by the pedals [m/s²].
-        bend: Of the road near the car.
+        place: What the road does to the car.
     """
 
     car: CarParameters
     road_wheel_angle: Real
     drive_command: Real
-    bend: Bend = Bend()
+    place: Place = Place()
 
 
 @compiled
@@ -169,7 +170,7 @@ def vehicle_rate(state: VehicleState, motion: VehicleInput) -> VehicleState:
     cosine, sine = xp.cos(state.yaw_angle), xp.sin(state.yaw_angle)
     forward, left = state.longitudinal_velocity, state.lateral_velocity
     along = push + state.yaw_rate * left
-    bend = motion.bend
+    bend = motion.place.bend
     moved = state.longitudinal_position - bend.station
     curvature = bend.curvature + bend.slope * moved
     progress = (forward * cosine - left * sine) / (
@@ -180,7 +181,19 @@ def vehicle_rate(state: VehicleState, motion: VehicleInput) -> VehicleState:
         lateral_position=forward * sine + left * cosine,
         yaw_angle=state.yaw_rate - curvature * progress,
         longitudinal_velocity=xp.select((forward > 0.0) | (along > 0.0), along, 0.0),
-        lateral_velocity=pull - state.yaw_rate * forward,
+        lateral_velocity=pull
+        + motion.place.side_force / car.mass
+        - state.yaw_rate * forward,
         yaw_rate=moment / car.yaw_inertia,
         drive=(motion.drive_command - state.drive) / car.powertrain_lag,
     )
+
+
+@compiled
+def driven(state: VehicleState, motion: VehicleInput, dt: Real) -> VehicleState:
+    """The car `dt` [s] later; one that has hit something stands where it is."""
+    standing = state._replace(
+        longitudinal_velocity=0.0, lateral_velocity=0.0, yaw_rate=0.0, drive=0.0
+    )
+    moved = rk4(vehicle_rate, state, motion, dt)
+    return xp.select(motion.place.stopped, standing, moved)

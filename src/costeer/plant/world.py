@@ -5,9 +5,8 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from costeer.base.array import Real, compiled
-from costeer.base.integrate import rk4
-from costeer.plant.alignment import Bend
 from costeer.plant.parameters import CarParameters, ColumnParameters
+from costeer.plant.place import Place, rumble_torque
 from costeer.plant.steering import (
     ColumnState,
     aligning_torque,
@@ -17,9 +16,9 @@ from costeer.plant.steering import (
 from costeer.plant.vehicle import (
     VehicleInput,
     VehicleState,
+    driven,
     front_lateral_force,
     resistance,
-    vehicle_rate,
 )
 
 
@@ -42,13 +41,13 @@ class Inputs(NamedTuple):
         driver_torque: Of the driver's hands [N·m].
         torque_command: Asked of the guidance motor [N·m].
         drive_command: Acceleration asked for by the pedals [m/s²].
-        bend: Of the road near the car.
+        place: What the road does to the car.
     """
 
     driver_torque: Real
     torque_command: Real
     drive_command: Real
-    bend: Bend = Bend()
+    place: Place = Place()
 
 
 @compiled
@@ -93,12 +92,13 @@ def step_column(
         drive_command=inputs.drive_command,
     )
     tyres = aligning_torque(car, front_lateral_force(state.vehicle, motion))
+    rumble = rumble_torque(inputs.place, state.vehicle.longitudinal_position)
     motor = motor_torque(column, wheel.motor_torque, inputs.torque_command, dt)
     rate = steering_wheel_rate(
         column,
         wheel.steering_wheel_angle,
         wheel.steering_wheel_rate,
-        inputs.driver_torque + motor + tyres,
+        inputs.driver_torque + motor + tyres + rumble,
         dt,
     )
     return ColumnState(
@@ -127,8 +127,6 @@ def step(
         car=car,
         road_wheel_angle=half_way / car.steering_ratio,
         drive_command=inputs.drive_command,
-        bend=inputs.bend,
+        place=inputs.place,
     )
-    return WorldState(
-        vehicle=rk4(vehicle_rate, state.vehicle, motion, dt), column=wheel
-    )
+    return WorldState(vehicle=driven(state.vehicle, motion, dt), column=wheel)

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 from costeer.base import array as xp
 from costeer.base.array import Flag, Real, compiled
-from costeer.plant.alignment import Bend
+from costeer.plant.alignment import NO_BEND, Bend
 from costeer.plant.parameters import CarParameters, RoadParameters
 from costeer.plant.road import adjacent_side, distance_to_adjacent_lane, lane_at
 from costeer.plant.vehicle import (
@@ -125,7 +125,7 @@ def measure(
     world: WorldState,
     driver_torque: Real,
     head: HeadTracker,
-    bend: Bend = Bend(),
+    bend: Bend = NO_BEND,
 ) -> Measurement:
     """One sample of all sensors.
 
