@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 from costeer.base import array as xp
 from costeer.base.array import Flag, Real, compiled
+from costeer.plant.following import LaneOutlook
 from costeer.plant.traffic import LeaderState
 from costeer.sensing.measurement import Measurement
 
@@ -67,6 +68,13 @@ class DecisionParameters(NamedTuple):
             the line and comes back.
         abandoned_pause: From giving up until the next decision [s]. Source: assumed,
             the other car passes.
+        gap_ahead: Least time gap to the car ahead in the other lane that is accepted
+            [s]. Source: assumed, in the range of critical gaps of Toledo et al. (2003).
+        gap_behind: Least time gap of the car behind there [s]. Source: as above.
+        closing_time: Least time until that car would be there [s]. Source: assumed,
+            people accept 5 s and more.
+        return_room: A lane is worth returning to when the next car there is so many
+            time gaps `headway` away, or not slower than wanted [-]. Source: assumed.
     """
 
     decides: Real = 1.0
@@ -85,6 +93,10 @@ class DecisionParameters(NamedTuple):
     abandoned_share: Real = 0.0
     abandoned_latest: Real = 0.35
     abandoned_pause: Real = 3.0
+    gap_ahead: Real = 0.6
+    gap_behind: Real = 0.8
+    closing_time: Real = 5.0
+    return_room: Real = 2.0
 
 
 class DecisionState(NamedTuple):
@@ -163,11 +175,40 @@ class Surroundings(NamedTuple):
         measurement: Where the car is and how fast.
         leader: The car ahead.
         wanted_speed: Of the driver on a free road [m/s].
+        outer: The lane to overtake in.
+        home: The lane to return to.
+        asked: 1 for a lane change that is asked for to overtake, -1 to return [-].
     """
 
     measurement: Measurement
     leader: LeaderState
     wanted_speed: Real
+    outer: LaneOutlook = LaneOutlook()
+    home: LaneOutlook = LaneOutlook()
+    asked: Real = 0.0
+
+
+@compiled
+def accepts(
+    parameters: DecisionParameters, lane: LaneOutlook, measurement: Measurement
+) -> Flag:
+    """Whether the gap in a lane beside is large enough, to the front and behind."""
+    speed = measurement.longitudinal_velocity
+    closing = xp.maximum(lane.behind.velocity - speed, 0.0)
+    ahead = lane.ahead.gap > parameters.gap_ahead * speed
+    behind = (lane.behind.gap > parameters.gap_behind * lane.behind.velocity) & (
+        lane.behind.gap > parameters.closing_time * closing
+    )
+    return ahead & behind
+
+
+@compiled
+def is_worth_returning(parameters: DecisionParameters, around: Surroundings) -> Flag:
+    """Whether the lane to return to is free for a while."""
+    next_car = around.home.ahead
+    speed = around.measurement.longitudinal_velocity
+    far = next_car.gap > parameters.return_room * parameters.headway * speed
+    return far | (next_car.velocity >= around.wanted_speed)
 
 
 @compiled
@@ -195,10 +236,11 @@ def wants_to_overtake(
 def wants_to_return(
     parameters: DecisionParameters, measurement: Measurement, leader: LeaderState
 ) -> Flag:
-    """Whether the leader is far enough behind."""
+    """Whether the leader is far enough behind, or is no car of the other lane."""
     lead = measurement.longitudinal_position - leader.longitudinal_position
     enough = parameters.return_headway * measurement.longitudinal_velocity
-    return xp.logical_not(leader.present) | (lead > enough)
+    beside = leader.lane != measurement.lane
+    return xp.logical_not(leader.present & beside) | (lead > enough)
 
 
 @compiled
@@ -243,16 +285,21 @@ def next_phase(
     time = state.time_in_phase
     prepared = time >= state.preparation_time
     settled = time >= state.change_duration + parameters.settling_time
-    overtake = wants_to_overtake(parameters, state.impatience, around)
+    way_out = accepts(parameters, around.outer, around.measurement)
+    way_back = accepts(parameters, around.home, around.measurement)
+    overtake = (
+        wants_to_overtake(parameters, state.impatience, around) | (around.asked > 0.5)
+    ) & way_out
     back = wants_to_return(parameters, around.measurement, around.leader)
+    back = (back & is_worth_returning(parameters, around)) | (around.asked < -0.5)
     rested = time >= state.pause
     phase = state.phase
     done = (
         ((phase == CRUISING) & overtake & rested)
-        | ((phase == PREPARING) & prepared)
+        | ((phase == PREPARING) & prepared & way_out)
         | ((phase == CHANGING) & settled)
-        | ((phase == PASSING) & back & rested)
-        | ((phase == PREPARING_RETURN) & prepared)
+        | ((phase == PASSING) & back & rested & way_back)
+        | ((phase == PREPARING_RETURN) & prepared & way_back)
     )
     home = (phase == RETURNING) & settled
     onwards = xp.select(home, CRUISING, xp.select(done, phase + 1.0, phase))
@@ -366,3 +413,11 @@ def time_to_crossing(state: DecisionState) -> Real:
     before = state.preparation_time + half - state.time_in_phase
     within = half - state.time_in_phase
     return xp.select(preparing, before, xp.select(changing, within, 1e9))
+
+
+@compiled
+def resumed(state: DecisionState, is_home: Flag) -> DecisionState:
+    """After an emergency: cruising in the own lane, or passing in the other one."""
+    calm = initial_state()
+    phase = xp.select(is_home, CRUISING, PASSING)
+    return calm._replace(phase=phase, change_duration=state.change_duration)

@@ -8,6 +8,7 @@ from costeer.base import array as xp
 from costeer.base.array import Real, compiled
 from costeer.drivers import (
     decision,
+    evasion,
     gaze,
     longitudinal,
     reliance,
@@ -21,6 +22,7 @@ from costeer.drivers.decision import (
     Draws,
     Surroundings,
 )
+from costeer.drivers.evasion import Evasion, EvasionParameters, EvasionState
 from costeer.drivers.gaze import GazeDraws, GazeParameters, GazeState
 from costeer.drivers.interface import (
     Action,
@@ -37,6 +39,10 @@ from costeer.plant.parameters import holding_stiffness
 from costeer.plant.road import cruising_lane
 from costeer.sensing.measurement import Measurement
 
+SLOWEST_SEEN = 5.0
+"""A driver who is slower steers as at this speed [m/s]: nobody winds the wheel of a car
+that hardly moves. Source: assumed."""
+
 
 class DriverParameters(NamedTuple):
     """One driver.
@@ -49,6 +55,7 @@ class DriverParameters(NamedTuple):
         decision: When to change lanes [SI units]. Source: drivers/decision.py.
         gaze: Glances [SI units]. Source: drivers/gaze.py.
         longitudinal: Speed [SI units]. Source: drivers/longitudinal.py.
+        evasion: Emergencies [SI units]. Source: drivers/evasion.py.
 
     Example:
         >>> import costeer
@@ -64,6 +71,7 @@ class DriverParameters(NamedTuple):
     decision: DecisionParameters = DecisionParameters()
     gaze: GazeParameters = GazeParameters()
     longitudinal: LongitudinalParameters = LongitudinalParameters()
+    evasion: EvasionParameters = EvasionParameters()
 
 
 class DriverState(NamedTuple):
@@ -75,6 +83,7 @@ class DriverState(NamedTuple):
     decision: DecisionState
     gaze: GazeState
     longitudinal: LongitudinalState
+    evasion: EvasionState
 
 
 @compiled
@@ -88,6 +97,7 @@ def initial_state(parameters: DriverParameters, lateral_position: Real) -> Drive
         decision=decision.initial_state(),
         gaze=gaze.initial_state(),
         longitudinal=longitudinal.initial_state(),
+        evasion=evasion.initial_state(),
     )
 
 
@@ -95,6 +105,7 @@ def initial_state(parameters: DriverParameters, lateral_position: Real) -> Drive
 def decide(
     parameters: DriverParameters,
     state: DriverState,
+    knowledge: Knowledge,
     perception: Perception,
     noise: DriverNoise,
     dt: Real,
@@ -106,11 +117,15 @@ def decide(
         glance_uniform=noise.look_uniform,
         abandoned_uniform=noise.abandoned_uniform,
     )
+    beside, out = perception.around, knowledge.road.overtaking_side
     around = Surroundings(
         measurement=perception.measurement,
         leader=perception.leader,
         wanted_speed=parameters.longitudinal.preferred_speed
         + state.longitudinal.speed_wander,
+        outer=xp.select(out > 0.0, beside.left, beside.right),
+        home=xp.select(out > 0.0, beside.right, beside.left),
+        asked=beside.wanted_side * out,
     )
     return decision.step(parameters.decision, state.decision, around, draws, dt)
 
@@ -160,6 +175,27 @@ def aim(
 
 
 @compiled
+def swerve(
+    parameters: DriverParameters,
+    knowledge: Knowledge,
+    measurement: Measurement,
+    aimed: TrackingState,
+    evading: Evasion,
+) -> TrackingState:
+    """The aim in an emergency: beside the obstacle, and back into a lane after it."""
+    away = tracking.path_to(measurement, evading.target, parameters.evasion.duration)
+    back = tracking.planned(
+        parameters.tracking,
+        knowledge.road,
+        measurement,
+        measurement.lane,
+        parameters.decision.change_duration,
+    )
+    planned = xp.select(evading.ends, back, aimed.path)
+    return aimed._replace(path=xp.select(evading.steers, away, planned))
+
+
+@compiled
 def see(
     parameters: DriverParameters,
     state: DriverState,
@@ -171,7 +207,7 @@ def see(
 ) -> tuple[VisionState, Real]:
     """Turn what is seen into an intended steering-wheel angle [rad]."""
     eyes = parameters.vision
-    speed = xp.maximum(measurement.longitudinal_velocity, 1.0)
+    speed = xp.maximum(measurement.longitudinal_velocity, SLOWEST_SEEN)
     near_distance = speed * eyes.near_time
     wanted = tracking.aim(
         aimed,
@@ -249,10 +285,23 @@ def act(
         dt: Control step [s].
     """
     measurement = perception.measurement
-    decided = decide(parameters, state, perception, noise, dt)
+    evaded, evading = evasion.step(
+        parameters.evasion,
+        state.evasion,
+        perception.around,
+        measurement,
+        knowledge.car,
+        knowledge.road.num_lanes,
+        dt,
+    )
+    decided = decide(parameters, state, knowledge, perception, noise, dt)
+    is_home = measurement.lane == cruising_lane(knowledge.road)
+    calm = decision.resumed(state.decision, is_home)
+    decided = xp.select(evading.active | evading.ends, calm, decided)
     direction = decision.direction(decided, knowledge.road.overtaking_side)
     head = look(parameters, state, decided, direction, noise, dt)
     aimed = aim(parameters, state, knowledge, measurement, decided, noise, dt)
+    aimed = swerve(parameters, knowledge, measurement, aimed, evading)
     eyes, intended = see(parameters, state, knowledge, measurement, aimed, noise, dt)
     hands, command = feel(parameters, state, knowledge, perception, intended, dt)
     foot = longitudinal.step(
@@ -264,6 +313,14 @@ def act(
         noise.speed,
         dt,
     )
+    foot = longitudinal.braking_hard(
+        parameters.longitudinal,
+        foot,
+        state.longitudinal.wanted_acceleration,
+        xp.select(evading.brakes, parameters.evasion.braking, 0.0),
+        measurement.longitudinal_velocity,
+        dt,
+    )
     new_state = DriverState(
         vision=eyes,
         reliance=hands,
@@ -271,6 +328,7 @@ def act(
         decision=decided,
         gaze=head,
         longitudinal=foot,
+        evasion=evaded,
     )
     return new_state, Action(
         arm=command,

@@ -167,6 +167,32 @@ def step(
 
 
 @compiled
+def braking_hard(
+    parameters: LongitudinalParameters,
+    state: LongitudinalState,
+    before: Real,
+    braking: Real,
+    speed: Real,
+    dt: Real,
+) -> LongitudinalState:
+    """The foot in an emergency.
+
+    Args:
+        parameters: Of this driver.
+        state: What the foot would do without one.
+        before: Acceleration that was wanted a step before [m/s²].
+        braking: Asked for now; 0 without an emergency [m/s²].
+        speed: Of the own car [m/s].
+        dt: Control step [s].
+    """
+    brakes = (braking > 0.0) & (speed > 0.5)
+    pressed = low_pass(before, -braking, dt, parameters.pedal_time / 2.0)
+    return state._replace(
+        wanted_acceleration=xp.select(brakes, pressed, state.wanted_acceleration)
+    )
+
+
+@compiled
 def pedals(car: CarParameters, wanted_acceleration: Real, speed: Real) -> Pedals:
     """Pedals that give an acceleration at this speed.
 

@@ -17,6 +17,7 @@ from costeer.base.array import Real
 from costeer.drivers.arm import ArmParameters
 from costeer.drivers.decision import DecisionParameters
 from costeer.drivers.driver import DriverParameters, act, initial_state
+from costeer.drivers.evasion import EvasionParameters
 from costeer.drivers.gaze import GazeParameters
 from costeer.drivers.interface import Draw, DriverModel
 from costeer.drivers.longitudinal import LongitudinalParameters
@@ -28,6 +29,14 @@ POPULATION_VERSION = "2"
 """Changes when a parameter, a spread or a correlation of the drivers does."""
 
 _POPULATION_STREAM = 0
+_EVASION_STREAM = 8
+
+REACTION_SPREAD = 0.25
+"""Standard deviation of the logarithm of reaction times between drivers [-]. Source:
+assumed."""
+
+FASTEST_REACTION = 0.3
+"""Shortest reaction time [s]. Source: spec section 12."""
 
 
 class Traits(NamedTuple):
@@ -221,7 +230,18 @@ def participant_driver(
         speed: Suggested speed [m/s].
         population: Spreads between drivers.
     """
-    return driver_with(drawn_traits(seed, participant), speed, population)
+    drawn = driver_with(drawn_traits(seed, participant), speed, population)
+    return drawn._replace(evasion=_evasion(seed, participant))
+
+
+def _evasion(seed: int, participant: int) -> EvasionParameters:
+    """How this driver meets an emergency; drawn apart from all other traits."""
+    entropy = [seed, _EVASION_STREAM, participant]
+    generator = np.random.Generator(np.random.PCG64(np.random.SeedSequence(entropy)))
+    trait = float(generator.standard_normal())
+    usual = EvasionParameters()
+    reaction = _positive(usual.reaction_time, REACTION_SPREAD, trait)
+    return usual._replace(reaction_time=max(reaction, FASTEST_REACTION))
 
 
 def driver_with(

@@ -96,6 +96,20 @@ def planned(
         lane: To change to [-].
         duration: That the driver plans [s].
     """
+    return path_to(
+        measurement, lane_centre(road, lane) + parameters.lane_bias, duration
+    )
+
+
+@compiled
+def path_to(measurement: Measurement, position: Real, duration: Real) -> Quintic:
+    """A path from the car to a line along the road.
+
+    Args:
+        measurement: Where the car is and points.
+        position: Of the line across the road [m].
+        duration: That is planned [s].
+    """
     speed = xp.maximum(measurement.longitudinal_velocity, 1.0)
     bend = line_curvature(measurement.road_curvature, measurement.lateral_position)
     return quintic(
@@ -104,7 +118,7 @@ def planned(
         measurement.lateral_position,
         xp.tan(measurement.yaw_angle),
         measurement.yaw_rate / speed - bend,
-        lane_centre(road, lane) + parameters.lane_bias,
+        position,
     )
 
 

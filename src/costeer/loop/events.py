@@ -10,6 +10,7 @@ from costeer.base.array import Flag, Real, compiled
 from costeer.plant.alignment import Bend
 from costeer.plant.fleet import (
     Car,
+    CarKind,
     Fleet,
     FleetParameters,
     Spot,
@@ -39,6 +40,9 @@ from costeer.plant.traffic import (
     no_leader,
 )
 from costeer.sensing.measurement import Measurement
+
+LENGTH = CarKind().length
+"""Of a usual car [m]: drivers follow by the distance of the cars' middles."""
 
 
 class EventState(NamedTuple):
@@ -205,6 +209,12 @@ def contact_of(
 
 
 @compiled
+def has_collided(state: EventState) -> Flag:
+    """Whether the car has hit a barrier or another car."""
+    return state.contact >= BARRIER
+
+
+@compiled
 def place_of(
     road: RoadParameters,
     along: Stretches,
@@ -247,7 +257,7 @@ def as_leader(ahead: Ahead, measurement: Measurement) -> LeaderState:
     seen = ahead.gap < LONGEST_GAP
     return no_leader()._replace(
         present=seen,
-        longitudinal_position=measurement.longitudinal_position + ahead.gap,
+        longitudinal_position=measurement.longitudinal_position + ahead.gap + LENGTH,
         longitudinal_velocity=ahead.velocity,
         lane=measurement.lane,
     )

@@ -24,6 +24,9 @@ from costeer.loop.rows import rules_of, writer_of
 from costeer.loop.step import LoopState, Rules, initial_state
 from costeer.loop.tick import INTENTION_NETWORK, Script, tick
 from costeer.methods.interface import Method, P, S
+from costeer.plant.fleet import car_numbers, num_cars
+from costeer.plant.place import BARRIER
+from costeer.records.row import ROW_COLUMNS
 
 
 class Fixed(NamedTuple):
@@ -33,6 +36,7 @@ class Fixed(NamedTuple):
     values: Callable[[Any], tuple[Any, ...]]  # Any: of a sample
     plant_steps: int
     intention: int
+    num_cars: int
 
 
 def _jax() -> Any:  # Any: the module, which a plain install lacks
@@ -89,6 +93,7 @@ def trace(
         drawn = DriverNoise(*draws)
         moved, sample = tick(fixed.rules, parameters, state, script, no_network, drawn)
         numbers = [jax.numpy.asarray(n, float) for n in fixed.values(sample)]
+        numbers += car_numbers(sample.events.fleet, fixed.num_cars)
         new_state = jax.tree_util.tree_map(_as_before, state, moved)
         position = new_state.world.vehicle.longitudinal_position
         return new_state, (position, jax.numpy.stack(numbers))
@@ -148,14 +153,18 @@ def _fixed(
         writer_of(method).values,
         parameters.plant_steps,
         script.intention,
+        num_cars(parameters.fleet),
     )
+
+
+_CONTACT = ROW_COLUMNS.index("contact")
 
 
 def _until_the_end(
     positions: NDArray[np.float64], rows: NDArray[np.float64], length: Real
 ) -> NDArray[np.float64]:
-    """The rows up to the step that reached the end of the road."""
-    arrived = np.flatnonzero(positions >= length)
+    """The rows up to the step that reached the end of the road, or a collision."""
+    arrived = np.flatnonzero((positions >= length) | (rows[:, _CONTACT] >= BARRIER))
     return rows[: arrived[0] + 1] if arrived.size else rows
 
 

@@ -27,6 +27,7 @@ from costeer.intention.predictors.registry import PREDICTORS, predictor
 from costeer.loop.rollout import Advance
 from costeer.loop.tick import INTENTION_GIVEN, Script
 from costeer.plant.parameters import RoadParameters
+from costeer.plant.place import BARRIER
 from costeer.plant.road import adjacent_side
 from costeer.records.row import ROW_COLUMNS
 
@@ -37,6 +38,7 @@ _HEAD = FEATURES.index("head_yaw")
 _SEEN = ROW_COLUMNS.index("head_yaw_valid")
 _LANE = ROW_COLUMNS.index("lane")
 _PLACE = ROW_COLUMNS.index("longitudinal_position")
+_CONTACT = ROW_COLUMNS.index("contact")
 
 
 def sample_of(row: Rows, road: RoadParameters) -> IntentionSample:
@@ -163,4 +165,6 @@ def outside_rollout(
             return rows[:k]
         probability = verdicts.after(sample_of(rows[k], road))
         advance(asked._replace(probability=probability), noise[now], rows[now])
+        if rows[k, _CONTACT] >= BARRIER:
+            return rows[: k + 1]
     return rows

@@ -28,6 +28,7 @@ from costeer.loop.person import (
     initial_motion,
 )
 from costeer.loop.real_wheel import WheelInput, wheel_step
+from costeer.loop.rollout import row_width
 from costeer.loop.rows import writer_of
 from costeer.methods.interface import (
     Method,
@@ -38,6 +39,7 @@ from costeer.methods.interface import (
     rule_of,
     usual_parameters,
 )
+from costeer.plant.fleet import num_cars, write_cars
 from costeer.sensing.torque_observer import (
     TorqueObserverParameters,
     WheelMotion,
@@ -115,7 +117,7 @@ def person_memory(method: Method[P, S], parameters: LoopParameters[P]) -> Person
         given=packed(NOTHING_GIVEN),
         held=packed(_HELD),
         wheel=packed(_WHEEL),
-        row=np.full(len(writer_of(method).columns), np.nan),
+        row=np.full(row_width(method, parameters), np.nan),
     )
 
 
@@ -141,7 +143,7 @@ def with_method(
     return memory._replace(
         parameters=packed(parameters),
         state=packed(old._replace(method=own)),
-        row=np.full(len(writer_of(method).columns), np.nan),
+        row=np.full(row_width(method, parameters), np.nan),
     )
 
 
@@ -178,10 +180,10 @@ def _compiled_tick(method: Method[P, S]) -> ControlTick:
         held: NDArray[np.float64],
         out: NDArray[np.float64],
     ) -> None:
-        now = unpack(_MOTION, motion)
+        now, chosen = unpack(_MOTION, motion), unpack(like, parameters)
         new_state, kept, sample = control(
             Rule(initial_state, step),
-            unpack(like, parameters),
+            chosen,
             unpack(like_state, state),
             now,
             unpack(NOTHING_GIVEN, given),
@@ -191,6 +193,7 @@ def _compiled_tick(method: Method[P, S]) -> ControlTick:
         pack(motion, counted_from_here(now))
         pack(held, kept)
         fill(out, sample)
+        write_cars(out, num_cars(chosen.fleet), sample.events.fleet)
 
     return entry_for((initial_state, step), tick)
 

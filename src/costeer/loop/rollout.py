@@ -31,6 +31,7 @@ from costeer.methods.interface import (
     compiled_once,
     usual_parameters,
 )
+from costeer.plant.fleet import num_cars
 
 Rows = NDArray[np.float64]
 
@@ -143,6 +144,11 @@ def _in_python(
     return advance
 
 
+def row_width(method: Method[P, S], parameters: LoopParameters[P]) -> int:
+    """Numbers in a row: the columns of the method's records, three for each car."""
+    return len(writer_of(method).columns) + 3 * num_cars(parameters.fleet)
+
+
 def rollout(
     method: Method[P, S],
     parameters: LoopParameters[P],
@@ -173,7 +179,7 @@ def rollout(
     """
     if engine == "jax":
         return jax_rollout(method, parameters, script, noise, driver)
-    rows = np.empty((len(noise), len(writer_of(method).columns)))
+    rows = np.empty((len(noise), row_width(method, parameters)))
     run_on = begun(method, parameters, network, engine, driver=driver)
     count = run_on(script, noise, rows)
     return rows[:count]

@@ -8,7 +8,8 @@ from typing import Any, NamedTuple
 from costeer.base.array import Real
 from costeer.drivers.checked import drawn_parameters
 from costeer.drivers.driver import DriverParameters
-from costeer.drivers.interface import AnyDriver, Draw
+from costeer.drivers.interface import AnyDriver
+from costeer.drivers.interface import Draw as DriverDraw
 from costeer.drivers.population import VIRTUAL, hands_off, participant_driver
 from costeer.drivers.registry import HANDS_OFF, driver_named
 from costeer.intention.predictors.chosen import Judge
@@ -31,6 +32,9 @@ from costeer.plant.parameters import (
     ColumnParameters,
     RoadParameters,
 )
+from costeer.scenarios.definition import Scenario
+from costeer.scenarios.reading import scenario_named
+from costeer.scenarios.world import Draw, world_of
 
 INTENTIONS = {
     "off": INTENTION_OFF,
@@ -81,6 +85,8 @@ class TrialSetup(NamedTuple):
             the population [-].
         parameters: Dotted names of parameters and the values they are given, as
             `("guidance.lateral_error_gain", 3.0)`; see `costeer parameters`.
+        scenario: Road, other cars and events: a name, a file or itself
+            (`scenarios.reading`).
     """
 
     participant: int = 1
@@ -105,6 +111,7 @@ class TrialSetup(NamedTuple):
     abandoned_share: Real = 0.0
     wander_factor: Real = 1.0
     parameters: tuple[tuple[str, Real], ...] = ()
+    scenario: str | Scenario = "expressway"
 
 
 SLOWEST = 12.0
@@ -249,7 +256,7 @@ def trial_driver(setup: TrialSetup) -> Any:  # Any: parameters of the model's ow
     model = trial_driver_model(setup)
     if model is not VIRTUAL:
         _check_unused(setup, model)
-        draw = Draw(setup.seed, setup.participant, setup.speed, trial_car(setup))
+        draw = DriverDraw(setup.seed, setup.participant, setup.speed, trial_car(setup))
         return drawn_parameters(model, draw)
     drawn = participant_driver(setup.seed, setup.participant, setup.speed)
     aim, decides = drawn.tracking, drawn.decision
@@ -299,11 +306,18 @@ def loop_parameters(setup: TrialSetup) -> LoopParameters[Any]:
         ValueError: If the setup cannot be run.
     """
     check_setup(setup)
+    scenario = scenario_named(setup.scenario)
+    car = trial_car(setup)
+    around = world_of(scenario, Draw(setup.seed, setup.participant, setup.length, car))
     world = LoopParameters(
         controller=0.0,
-        car=trial_car(setup),
+        car=car,
         column=ColumnParameters(),
-        road=RoadParameters(length=setup.length),
+        road=around.road,
+        traffic=around.traffic,
+        alignment=around.alignment,
+        fleet=around.fleet,
+        stretches=around.stretches,
         driver=trial_driver(setup),
         start=StartParameters(
             speed=setup.speed,

@@ -19,6 +19,7 @@ from costeer.controller.signals import Request
 from costeer.drivers.interface import DriverNoise
 from costeer.intention.features import IntentionSample, facing
 from costeer.intention.wavefront import WavefrontState, WavefrontWeights, advance
+from costeer.loop.events import has_collided
 from costeer.loop.half_step import Sample
 from costeer.loop.parameters import DT, LoopParameters
 from costeer.loop.rows import LoopRule
@@ -30,6 +31,7 @@ from costeer.loop.step import (
     sense,
     step,
 )
+from costeer.plant.fleet import num_cars, write_cars
 from costeer.sensing.measurement import Measurement
 
 S = TypeVar("S")
@@ -160,7 +162,9 @@ def run(
     noise: NDArray[np.float64],
     rows: NDArray[np.float64],
 ) -> tuple[LoopState[S], int]:
-    """Fill `rows` until the road or the noise ends; return how many were filled.
+    """Fill `rows` until the road or the noise ends, or the car hits something.
+
+    Returns the state then, and how many rows were filled.
 
     Args:
         loop: The functions of the loop.
@@ -175,6 +179,9 @@ def run(
         drawn = unpack(_NOISE, noise[k])
         state, sample = tick(loop.rules, parameters, state, script, network, drawn)
         loop.fill(rows[k], sample)
+        write_cars(rows[k], num_cars(parameters.fleet), sample.events.fleet)
+        if has_collided(sample.events):
+            return state, k + 1
         if state.world.vehicle.longitudinal_position >= parameters.road.length:
             return state, k + 1
     return state, len(noise)

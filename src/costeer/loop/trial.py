@@ -31,8 +31,7 @@ from costeer.intention.weights import IntentionNetwork, load_weights
 from costeer.loop.noise import driver_noise
 from costeer.loop.outside import Verdicts, outside_rollout
 from costeer.loop.parameters import DT, LoopParameters
-from costeer.loop.rollout import begun, rollout
-from costeer.loop.rows import writer_of
+from costeer.loop.rollout import begun, rollout, row_width
 from costeer.loop.scenario import (
     INTENTIONS,
     TrialSetup,
@@ -44,9 +43,11 @@ from costeer.loop.scenario import (
 )
 from costeer.loop.tick import Network, Script
 from costeer.methods.interface import Method, method_sources
+from costeer.plant.fleet import num_cars
 from costeer.records import metadata as kinds
-from costeer.records.columns import TrialRecord, with_method_columns
+from costeer.records.columns import TrialRecord, car_columns, with_method_columns
 from costeer.records.row import ROW_COLUMNS, record_columns
+from costeer.scenarios.reading import scenario_named
 
 SLOWEST_SHARE = 0.5
 """A trial ends at the latest when a car at this share of its speed would arrive."""
@@ -153,17 +154,16 @@ def simulate_trial(setup: TrialSetup, engine: str = "numba") -> TrialRecord:
             verdicts,
             noise,
             parameters.road,
-            len(writer_of(method).columns),
+            row_width(method, parameters),
         )
     else:
         rows = rollout(method, parameters, script, network, noise, engine, driver)
     _refuse_broken(setup, rows)
-    columns = record_columns(
-        rows, is_assisted(setup), with_method_columns(method.columns)
-    )
+    added = (*method.columns, *car_columns(num_cars(parameters.fleet)))
+    columns = record_columns(rows, is_assisted(setup), with_method_columns(added))
     about = trial_metadata(setup, parameters, predictor)
     about["torque_faults"] = int(np.count_nonzero(columns["torque_fault"]))
-    return TrialRecord(about, columns, method.columns)
+    return TrialRecord(about, columns, added)
 
 
 def _refuse_broken(setup: TrialSetup, rows: NDArray[np.float64]) -> None:
@@ -189,8 +189,11 @@ def trial_metadata(
     predictor: ChosenPredictor | None,
 ) -> dict[str, object]:
     """The record's description of the trial, spec section 6."""
-    configuration = json.loads(json.dumps(_as_dict(parameters)))
+    # Road and cars follow from the scenario and the seed, which stand in the setup.
+    told = parameters._replace(alignment=(), fleet=(), stretches=())  # type: ignore[arg-type]
+    configuration = json.loads(json.dumps(_as_dict(told)))
     configuration["setup"] = _as_dict(setup)
+    configuration["setup"]["scenario"] = _as_dict(scenario_named(setup.scenario))
     text = json.dumps(configuration, sort_keys=True)
     condition, method = trial_condition(setup), trial_method(setup)
     driver = trial_driver_model(setup)
@@ -206,6 +209,7 @@ def trial_metadata(
         "method_source_hash": method_sources(method),
         "car": setup.car if isinstance(setup.car, str) else "own",
         "speed": setup.speed,
+        "scenario": scenario_metadata(setup),
         "driver": _driver_text(setup, driver),
         "driver_source_hash": driver_sources(driver),
         "predictor": None if predictor is None else predictor.name,
@@ -218,6 +222,12 @@ def trial_metadata(
         "driver_kind": kinds.HANDS_OFF if setup.driver == HANDS_OFF else kinds.VIRTUAL,
         "record_version": kinds.RECORD_VERSION,
     }
+
+
+def scenario_metadata(setup: TrialSetup) -> dict[str, object]:
+    """The scenario of a trial, whole: what a reader draws and judges by."""
+    told: dict[str, object] = _as_dict(scenario_named(setup.scenario))
+    return told
 
 
 def _driver_text(setup: TrialSetup, driver: AnyDriver) -> str:

@@ -27,7 +27,7 @@ class Alignment(NamedTuple):
 
     Attributes:
         num_stations: Stations in use [-].
-        table: A `Station` in each row, shape `(256 * 4,)`; beyond `num_stations` they lie at
+        table: A `Station` in each row, flat; those beyond `num_stations` lie at
             infinity.
     """
 

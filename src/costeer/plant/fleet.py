@@ -70,6 +70,7 @@ class CarKind(NamedTuple):
         position: At the start, or where it appears [m].
         lateral: From the left lane's centre [m].
         lane: That it drives in [-].
+        offset: From that lane's centre [m].
         velocity: At the start [m/s].
         desired: Speed it wants to drive [m/s].
         length: [m].
@@ -89,6 +90,7 @@ class CarKind(NamedTuple):
     position: Real = 0.0
     lateral: Real = 0.0
     lane: Real = 0.0
+    offset: Real = 0.0
     velocity: Real = 0.0
     desired: Real = 0.0
     length: Real = 4.5
@@ -102,6 +104,10 @@ class CarKind(NamedTuple):
     first: Order = Order()
     second: Order = Order()
     third: Order = Order()
+
+
+OWN = CarKind()
+"""The default car as the others see it."""
 
 
 class Car(NamedTuple):
@@ -167,21 +173,23 @@ class Fleet(NamedTuple):
     cars: Numbers
 
 
-def fleet_parameters(kinds: Sequence[CarKind], reach: float = 400.0) -> FleetParameters:
+def fleet_parameters(
+    kinds: Sequence[CarKind], reach: float = 400.0, own: CarKind = OWN
+) -> FleetParameters:
     """The cars of a road.
 
     Args:
         kinds: Of the other cars.
         reach: Cars of a stream that are so far away come in again at the other end [m].
+        own: The driven car.
 
     Raises:
         ValueError: If there are too many.
     """
     if len(kinds) > MOST_CARS:
         raise ValueError(f"there are {len(kinds)} other cars; give at most {MOST_CARS}")
-    table = np.tile(packed(CarKind()), SLOTS)
-    for place, kind in enumerate(kinds, start=1):
-        table[place * KINDS.width : (place + 1) * KINDS.width] = packed(kind)
+    unused = [CarKind()] * (MOST_CARS - len(kinds))
+    table = np.concatenate([packed(each) for each in (own, *kinds, *unused)])
     return FleetParameters(float(len(kinds) + 1), reach, table)
 
 
@@ -340,6 +348,40 @@ def _with_ego(fleet: Any, ego: Any) -> Any:
         return fleet
 
     return implementation
+
+
+@compiled
+def write_cars(out: Numbers, num_cars: int, fleet: Fleet) -> None:
+    """Write where the other cars are into the last numbers of a row.
+
+    Args:
+        out: The row, of which the last `3 * num_cars` numbers are filled.
+        num_cars: Other cars in use [-].
+        fleet: Where they are.
+    """
+    for place in range(num_cars):
+        car: Car = _read_car(fleet.cars, place + 1)
+        there, first = car.present > 0.5, len(out) + 3 * (place - num_cars)
+        out[first] = xp.select(there, car.position, math.nan)
+        out[first + 1] = xp.select(there, car.lateral, math.nan)
+        out[first + 2] = xp.select(there, car.velocity, math.nan)
+
+
+def car_numbers(fleet: Fleet, num_cars: int) -> list[Any]:
+    """What `write_cars` writes, as values of JAX."""
+    numbers = []
+    for place in range(1, num_cars + 1):
+        car: Car = _read_car(fleet.cars, place)
+        there = car.present > 0.5
+        said = (car.position, car.lateral, car.velocity)
+        numbers += [xp.select(there, value, math.nan) for value in said]
+    return numbers
+
+
+@compiled
+def num_cars(parameters: FleetParameters) -> int:
+    """Other cars in use [-]."""
+    return int(parameters.num_places) - 1
 
 
 class Neighbours(NamedTuple):

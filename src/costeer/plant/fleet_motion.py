@@ -216,7 +216,7 @@ def driven_on(kind: CarKind, reach: Real, world: World, car: Car, ego: Car) -> C
     beyond = streams & (moved > ego.position + reach)
     back = xp.select(behind, moved + 2.0 * reach, moved)
     share = smooth(car.changing / world.law.change_duration)
-    centre = lane_centre(world.road, car.lane)
+    centre = lane_centre(world.road, car.lane) + kind.offset
     return car._replace(
         position=xp.select(beyond, back - 2.0 * reach, back),
         velocity=velocity,

@@ -16,9 +16,9 @@ from numpy.typing import NDArray
 
 from costeer.records.checks import check_time, refuse_unknown
 from costeer.records.columns import (
+    ADDED_PREFIXES,
     COLUMN_NAMES,
     COLUMNS,
-    METHOD_PREFIX,
     Column,
     Kind,
     Mirrored,
@@ -185,7 +185,7 @@ def described(schema: pa.Schema) -> Described:
     metadata = _metadata(schema)
     refuse_twice(schema.names)
     others = [field for field in schema if field.name not in COLUMN_NAMES]
-    refuse_unknown(f.name for f in others if not f.name.startswith(METHOD_PREFIX))
+    refuse_unknown(f.name for f in others if not f.name.startswith(ADDED_PREFIXES))
     added = [_declared(field) for field in others]
     return Described(metadata, with_method_columns(added))
 

@@ -24,9 +24,9 @@ from costeer.records.arrow import (
 )
 from costeer.records.checks import refuse_unknown, validated
 from costeer.records.columns import (
+    ADDED_PREFIXES,
     COLUMN_NAMES,
     COLUMNS,
-    METHOD_PREFIX,
     MODES,
     Column,
     TrialRecord,
@@ -139,7 +139,7 @@ def read_record(
     refuse_unknown(
         name
         for name in names or ()
-        if name not in COLUMN_NAMES and not name.startswith(METHOD_PREFIX)
+        if name not in COLUMN_NAMES and not name.startswith(ADDED_PREFIXES)
     )
     return _record_in(_opened(read_whole(Path(path)), path), path, names)
 

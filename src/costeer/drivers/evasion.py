@@ -1,0 +1,212 @@
+"""Emergency: what is in the way cannot be followed; brake, and swerve if there is room.
+
+The manoeuvre is none of the driver's lane changes: no glance, no preparation, a path as
+short as a person steers in fear. Anchors: at 70 km/h and above 3.0 s everybody avoids
+an obstacle, below 1.2 s nobody; the first reaction comes after 0.3 s at the earliest;
+peaks of the wheel rate are about 500 deg/s (spec section 12). Set on manual driving.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from costeer.base import array as xp
+from costeer.base.array import Flag, Real, compiled
+from costeer.plant.fleet import Neighbours
+from costeer.plant.following import LONGEST_GAP, LaneOutlook
+from costeer.plant.parameters import CarParameters
+from costeer.sensing.measurement import Measurement
+
+
+class EvasionParameters(NamedTuple):
+    """How a driver avoids an obstacle.
+
+    Attributes:
+        reaction_time: From its being a danger until hands and foot move [s]. Source:
+            0.3 s at the earliest in the anchors; median assumed, spread over the
+            population.
+        danger_braking: An obstacle is a danger when it asks for more braking than this
+            [m/s²]. Source: assumed, twice what is comfortable.
+        danger_closing: And when it comes nearer faster than this [m/s]. Source:
+            assumed.
+        braking: Asked of the brake [m/s²]. Source: assumed, hard but on the tyres'
+            linear side when steering too.
+        duration: Of the swerve to the side [s]. Source: assumed, twice as fast as the
+            paper's rapid lane change.
+        margin: Beside the obstacle that is aimed at [m]. Source: assumed.
+        gap_behind: To a car behind in the lane beside that is accepted in danger, in
+            seconds of the closing [s]. Source: assumed.
+        calm_after: From the beginning until the driver plans as usual [s]. Source:
+            assumed.
+    """
+
+    reaction_time: Real = 0.8
+    danger_braking: Real = 3.6
+    danger_closing: Real = 4.0
+    braking: Real = 7.0
+    duration: Real = 2.0
+    margin: Real = 0.5
+    gap_behind: Real = 1.5
+    calm_after: Real = 3.0
+
+
+class EvasionState(NamedTuple):
+    """What the driver remembers of a danger.
+
+    Attributes:
+        noticed: Since there has been a danger [s].
+        evading: Since hands and foot moved; negative: not [s].
+        side: Swerved to, -1 right, 0 not at all, +1 left [-].
+        target: Lateral position swerved to [m].
+    """
+
+    noticed: Real
+    evading: Real
+    side: Real
+    target: Real
+
+
+class Evasion(NamedTuple):
+    """What it makes of this step.
+
+    Attributes:
+        active: Whether the driver is busy with the danger.
+        brakes: Whether the foot brakes: as long as something is in the way.
+        steers: Whether a swerve begins at this step.
+        ends: Whether it is over at this step.
+        target: Lateral position swerved to [m].
+    """
+
+    active: Flag
+    brakes: Flag
+    steers: Flag
+    ends: Flag
+    target: Real
+
+
+@compiled
+def initial_state() -> EvasionState:
+    """No danger."""
+    return EvasionState(noticed=0.0, evading=-1.0, side=0.0, target=0.0)
+
+
+@compiled
+def is_danger(
+    parameters: EvasionParameters, around: Neighbours, measurement: Measurement
+) -> Flag:
+    """Whether what is in the way asks for harder braking than following does."""
+    ahead = around.own.ahead
+    closing = measurement.longitudinal_velocity - ahead.velocity
+    room = xp.maximum(ahead.gap - 1.0, 0.1)
+    needed = closing * closing / (2.0 * room)
+    fast = closing > parameters.danger_closing
+    return fast & (needed > parameters.danger_braking)
+
+
+@compiled
+def has_room(
+    parameters: EvasionParameters,
+    lane: LaneOutlook,
+    own: LaneOutlook,
+    measurement: Measurement,
+    exists: Flag,
+) -> Flag:
+    """Whether a lane beside is free enough to swerve into.
+
+    Args:
+        parameters: Of this driver.
+        lane: Beside.
+        own: The lane with the obstacle.
+        measurement: Of the own car.
+        exists: Whether there is such a lane.
+    """
+    closing = xp.maximum(lane.behind.velocity - measurement.longitudinal_velocity, 0.0)
+    behind = lane.behind.gap > 2.0 + parameters.gap_behind * closing
+    ahead = lane.ahead.gap > own.ahead.gap
+    return exists & behind & ahead
+
+
+@compiled
+def swerve_target(
+    parameters: EvasionParameters,
+    around: Neighbours,
+    car: CarParameters,
+    side: Real,
+) -> Real:
+    """Lateral position beside the obstacle [m].
+
+    Args:
+        parameters: Margin.
+        around: With the obstacle.
+        car: The own one.
+        side: To pass on [-].
+    """
+    obstacle = around.own.ahead
+    beside = (obstacle.width + car.width) / 2.0 + parameters.margin
+    return obstacle.lateral + side * beside
+
+
+@compiled
+def chosen_side(
+    around: Neighbours,
+    measurement: Measurement,
+    left_free: Flag,
+    right_free: Flag,
+) -> Real:
+    """Side to swerve to [-]: the free one that is nearer, 0 if none is."""
+    leans_left = measurement.lateral_position >= around.own.ahead.lateral
+    nearer = xp.select(leans_left, 1.0, -1.0)
+    only = xp.select(left_free, 1.0, xp.select(right_free, -1.0, 0.0))
+    return xp.select(left_free & right_free, nearer, only)
+
+
+@compiled
+def step(
+    parameters: EvasionParameters,
+    state: EvasionState,
+    around: Neighbours,
+    measurement: Measurement,
+    car: CarParameters,
+    num_lanes: Real,
+    dt: Real,
+) -> tuple[EvasionState, Evasion]:
+    """Notice, react, calm down.
+
+    Args:
+        parameters: Of this driver.
+        state: Of the danger.
+        around: Cars and obstacles.
+        measurement: Of the own car.
+        car: The own one.
+        num_lanes: Of the road [-].
+        dt: Control step [s].
+    """
+    danger = is_danger(parameters, around, measurement)
+    active = state.evading >= 0.0
+    noticed = xp.select(danger, state.noticed + dt, 0.0)
+    begins = danger & xp.logical_not(active) & (noticed >= parameters.reaction_time)
+    lane = measurement.lane
+    left = has_room(
+        parameters, around.left, around.own, measurement, lane < num_lanes - 1.0
+    )
+    right = has_room(parameters, around.right, around.own, measurement, lane > 0.0)
+    side = chosen_side(around, measurement, left, right)
+    since = xp.select(active, state.evading + dt, -1.0)
+    over = active & (since >= parameters.calm_after) & xp.logical_not(danger)
+    new = EvasionState(
+        noticed=noticed,
+        evading=xp.select(begins, 0.0, xp.select(over, -1.0, since)),
+        side=xp.select(begins, side, state.side),
+        target=xp.select(
+            begins, swerve_target(parameters, around, car, side), state.target
+        ),
+    )
+    ahead, busy = around.own.ahead, new.evading >= 0.0
+    nearing = measurement.longitudinal_velocity > ahead.velocity
+    return new, Evasion(
+        active=busy,
+        brakes=busy & nearing & (ahead.gap < LONGEST_GAP),
+        steers=begins & (side != 0.0),
+        ends=over,
+        target=new.target,
+    )

@@ -1,0 +1,1 @@
+"""Roads, other cars and events as data: scenarios, their files and what they become."""
