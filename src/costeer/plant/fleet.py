@@ -210,9 +210,12 @@ def _initial_car(kind: CarKind) -> Car:
 
 def initial_fleet(parameters: FleetParameters) -> Fleet:
     """The cars before the first step; none has appeared."""
-    kinds = [_read_kind(parameters.kinds, place) for place in range(SLOTS)]
-    parts = [packed(_initial_car(kind)) for kind in kinds]
-    return Fleet(np.concatenate(parts))
+    cars = [_initial_car(_read_kind(parameters.kinds, k)) for k in range(SLOTS)]
+    if isinstance(parameters.kinds, np.ndarray):
+        return Fleet(np.array(cars).ravel())
+    numpy: Any = sys.modules["jax.numpy"]
+    rows = numpy.asarray([numpy.stack([1.0 * each for each in car]) for car in cars])
+    return Fleet(rows.ravel())
 
 
 class Spot(NamedTuple):
