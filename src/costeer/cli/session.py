@@ -282,7 +282,7 @@ def _status(folder: Path) -> None:
     gone = num_withdrawn(session)
     session.close()
     if not rows:
-        note("costeer: nobody has begun yet; participants begin on the console of:")
+        note("costeer: no participants; they begin on the console of:")
         note(f"costeer session run {folder}")
     if gone:
         note(f"costeer: {gone} withdrew; nothing of them is left")
@@ -302,8 +302,8 @@ def _export(folder: Path, to: str, out: Path | None) -> None:
     people = export_session(folder, to, out)
     typer.echo(out)
     note(
-        f"costeer: {len(people.drives)} trials; {len(people.exclusions)} are excluded "
-        "or missing, --format csv says why"
+        f"costeer: {len(people.drives)} trials; excluded or missing: "
+        f"{len(people.exclusions)}, exclusions.csv of --format csv says why"
     )
 
 
