@@ -130,7 +130,8 @@ class Session:
         )
         if not found:
             raise ValueError(
-                f"there is no participant '{participant}'; the experimenter begins one"
+                f"there is no participant '{participant}'; costeer session status "
+                f"{self.folder} lists them"
             )
         return found[0]
 

@@ -40,6 +40,10 @@ steps:
 PATIENCE = 300.0
 """Longest wait for a drive to be ready or over [s]: others may use the machine."""
 HTML = "<b>bold</b>"
+RUNNING = """(() => {
+  document.querySelector("#resume:enabled")?.click();
+  return document.getElementById("state").textContent === "RUNNING";
+})()"""
 
 
 def wait_for(page: Page, expression: str) -> None:
@@ -54,7 +58,7 @@ def keep_picture(page: Page, name: str) -> None:
     """Keep a picture of a page for docs/session.md, where `COSTEER_FIGURES` asks."""
     if FIGURES:
         page.bring_to_front()
-        page.wait_for_timeout(600)
+        page.wait_for_timeout(300)
         page.screenshot(path=Path(FIGURES) / f"session_{name}.png")
 
 
@@ -138,6 +142,8 @@ def test_session_of_two_drives_leaves_records_answers_and_measures(
         )
         console.get_by_role("button", name="Start").click()  # here the console starts
         keep_going(page, console, LENGTH - 120.0)
+        if FIGURES:  # a busy computer may just have paused it
+            wait_for(console, RUNNING)
         keep_picture(console, "console")
         keep_going(page, console)
         page.get_by_role("heading", name="The guidance").wait_for()
