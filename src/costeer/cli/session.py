@@ -48,7 +48,7 @@ def session(
     host: Annotated[
         str,
         typer.Option(
-            help="With run: address to serve the pages on; other computers need a token."
+            help="With run: address to serve pages on; other computers need a token."
         ),
     ] = "127.0.0.1",
     browser: Annotated[
@@ -66,8 +66,8 @@ def session(
     haste: Annotated[
         float | None,
         typer.Option(
-            help="With rehearse, or run --wheel simulated:virtual: how many times as fast as "
-            "the clock drives go."
+            help="With rehearse, or run --wheel simulated:virtual: how many times as "
+            "fast as the clock drives go."
         ),
     ] = None,
     participants: Annotated[
