@@ -52,8 +52,8 @@ class Session:
         plan_file = folder / PLAN_FILE
         if not plan_file.is_file():
             raise ValueError(
-                f"{folder} is no study with people: it has no {PLAN_FILE}; make one "
-                f"with: costeer session new {folder}"
+                f"{folder} holds no study with people, as there is no {PLAN_FILE} in "
+                f"it; make one with: costeer session new {folder}"
             )
         self._text = plan_file.read_text("utf-8")
         self.plan = parsed_plan(self._text, str(plan_file))
@@ -130,7 +130,8 @@ class Session:
         )
         if not found:
             raise ValueError(
-                f"there is no participant '{participant}'; the experimenter begins one"
+                f"there is no participant '{participant}'; costeer session status "
+                f"{self.folder} lists them"
             )
         return found[0]
 

@@ -6,6 +6,7 @@ import { words } from "./words.js";
 export class DriveFrame {
   /** @param {URLSearchParams} given options of the view and token, passed on */
   constructor(given) {
+    if (!given.has("clean")) given.set("clean", ""); // figures are for the experimenter
     const query = given.toString();
     this.address = `./drive${query ? `?${query}` : ""}`;
     this.frame = null;
@@ -39,6 +40,10 @@ export class DriveFrame {
       id: "drive", title: words(state.texts, "session_title"), src: this.address,
       allow: "fullscreen; gamepad",
     });
+    const { texts, step } = state;
+    const waiting = texts[step.self_paced ? "drive_waiting_text" : "drive_held_text"];
+    this.frame.dataset.texts = JSON.stringify({ ...texts, drive_waiting_text: waiting });
+    this.frame.dataset.lang = state.language;
     this.frame.addEventListener("load", () => this.frame?.focus());
     document.body.classList.add("drives");
     document.body.append(this.frame);
