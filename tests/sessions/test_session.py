@@ -14,10 +14,9 @@ from costeer.sessions.attempts import ABORTED, RUNNING, Attempts
 from costeer.sessions.plan import (
     balance,
     block_order,
-    paper_plan_text,
-    parsed_plan,
     session_steps,
 )
+from costeer.sessions.plan_file import paper_plan_text, parsed_plan
 from costeer.sessions.session import Session
 from costeer.sessions.standing import FINISHED, WHOLE, OutOfStepError
 from costeer.sessions.store import STORE_FILE, StoreError
@@ -183,7 +182,7 @@ def test_a_dropout_is_replaced_in_the_same_row_of_the_square(tmp_path: Path) -> 
     assert (slots["P04"], slots["P03"]) == (slots["P02"], 3)
     second = [each.id for each in session.steps_of("P04")]
     assert second == [each.id for each in session.steps_of("P02")]
-    with pytest.raises(ValueError, match="P02 has dropped; give another"):
+    with pytest.raises(ValueError, match="P02 has dropped out; give another"):
         session.begin("P02")
     with pytest.raises(ValueError, match="give a reason"):
         session.drop("P01", "  ")

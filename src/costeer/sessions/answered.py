@@ -35,7 +35,7 @@ def answers_in(session: Session) -> list[Answered]:
     """Questionnaires that were answered, in the order of people and time."""
     slots = {row["participant"]: row["slot"] for row in session.people()}
     rows = session.store.rows(
-        "SELECT * FROM answers ORDER BY participant, monotonic, step, rowid"
+        "SELECT * FROM answers ORDER BY participant, rowid"
     )
     steps: dict[tuple[str, str], list[Row]] = {}
     for row in rows:
