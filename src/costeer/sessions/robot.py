@@ -264,7 +264,9 @@ class Robot:
             return
         if stands == "running" and step["kind"] == "practise" and step.get("enough"):
             with suppress(urllib.error.HTTPError):
-                self.server.ask("/api/session/next", {"step": step["id"]})
+                self.server.ask(
+                    "/api/session/next", {"participant": self._who, "step": step["id"]}
+                )
         if stands in ("ready", "paused") and frame.count():
             inside = self._page.frame_locator("iframe").locator("body")
             inside.press("Enter", timeout=5000)

@@ -190,7 +190,9 @@ class Session:
         self, participant: str, status: str, reason: str = "", slot: int = 0
     ) -> None:
         """Write how it stands with somebody, within a transaction; slot 0: the same."""
-        changed = {"status": status, "reason": reason} | ({"slot": slot} if slot else {})
+        changed = {"status": status, "reason": reason} | (
+            {"slot": slot} if slot else {}
+        )
         self.store.put("participants", self.person(participant) | changed)
         self._steps.pop(participant, None)
 

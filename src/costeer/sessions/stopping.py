@@ -17,9 +17,7 @@ from costeer.sessions.standing import (
 )
 
 
-def stop_taking_part(
-    session: Session, participant: str, deletes: bool = False
-) -> None:
+def stop_taking_part(session: Session, participant: str, deletes: bool = False) -> None:
     """Keep that a participant does not take part, or not any more.
 
     Who does not consent gives the row of the square back: nothing was driven.
@@ -58,9 +56,7 @@ def take_part_again(session: Session, participant: str) -> None:
     row = session.person(participant)
     if row["status"] not in ENDED:
         return
-    held = {
-        int(each["slot"]) for each in session.people() if each["status"] in HOLDING
-    }
+    held = {int(each["slot"]) for each in session.people() if each["status"] in HOLDING}
     is_given = row["status"] == DECLINED and int(row["slot"]) in held
     slot = session.free_slot() if is_given else int(row["slot"])
     with session.store.transaction():
