@@ -267,9 +267,7 @@ def _check_trials(plan: Plan, name: str) -> None:
         trial = trial_of(plan, step, 1)
         with _at(f"{name}: {step.id}"):
             check_setup(trial)
-            if (
-                step.method not in methods
-            ):  # parameters are the same for all of a method
+            if step.method not in methods:  # its parameters are the same
                 loop_parameters(trial)
         methods.add(step.method)
 
