@@ -74,7 +74,8 @@ class Page {
       this.enter(face);
     }
     this.view?.update?.(state);
-    this.frame.update(state, face === "frame");
+    const isNear = face === "brief" && state.step.drive.state === "ready" && !document.hidden;
+    this.frame.update(state, isNear, face === "frame");
     this.stopping.show(state, NO_WAY_OUT.has(face));
     this.showHead();
     this.showBanner();
