@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 from pathlib import Path
 
@@ -30,13 +31,14 @@ def start(page: Page, console: Page) -> None:
     page.get_by_role("button", name="I am ready").click()
     wait_for(console, "document.getElementById('facts').textContent.includes('drives')")
     console.get_by_role("button", name="Start").click()
-    wait_for(console, f"{STATE} === 'RUNNING'")
+    go_on(console)
 
 
-def go_on(console: Page) -> None:
-    """Let the drive run again, which a page that left has paused."""
+def go_on(console: Page, further: float = 5.0) -> None:
+    """Let it drive some metres; a page that left, or a busy computer, pauses it."""
+    goal = metres(console) + further
     deadline = time.monotonic() + PATIENCE
-    while console.evaluate(STATE) != "RUNNING":
+    while metres(console) < goal:
         assert time.monotonic() < deadline
         console.evaluate("document.querySelector('#resume:enabled')?.click()")
         console.wait_for_timeout(200)
@@ -45,7 +47,8 @@ def go_on(console: Page) -> None:
 def metres(console: Page) -> float:
     """Driven so far."""
     text = "parseInt(document.querySelectorAll('#facts dd')[2].textContent)"
-    return float(console.evaluate(text) or 0.0)
+    found = float(console.evaluate(text) or 0.0)
+    return found if math.isfinite(found) else 0.0
 
 
 def test_a_drive_survives_tabs_reload_and_back_and_stops_at_once(
@@ -81,16 +84,15 @@ def test_a_drive_survives_tabs_reload_and_back_and_stops_at_once(
 def check_charts(console: Page) -> None:
     """Values under the pointer; a zoom that stays until it is left."""
     wait_for(console, "document.querySelectorAll('.value')[4].textContent.length > 1")
-    wait_for(console, "parseInt(document.querySelector('#facts dd').textContent) >= 0")
-    console.wait_for_timeout(2000)
     plot = console.locator(".plot .u-over").nth(3)
     box = plot.bounding_box()
     assert box is not None
     left, middle = box["x"], box["y"] + box["height"] / 2.0
-    console.mouse.move(left + box["width"] * 0.02, middle)
-    wait_for(console, "document.querySelector('.u-cursor-x') !== null")
-    hovered = console.locator(".value").nth(4).inner_text()
-    assert hovered.split()[0].isdigit()  # km/h
+    # Without the pointer the newest value shows; the course begins at 70 km/h.
+    console.mouse.move(left + 1.0, middle)
+    wait_for(
+        console, "document.querySelectorAll('.value')[4].textContent.startsWith('70')"
+    )
     console.mouse.down()
     console.mouse.move(left + box["width"] * 0.5, middle, steps=5)
     console.mouse.up()
@@ -106,7 +108,8 @@ def check_second_tab(page: Page, console: Page) -> None:
     """It is told that another page drives, and takes nothing from that one."""
     other = page.context.new_page()
     other.goto(page.url)
-    other.locator("#banner", has_text="in another window").wait_for(timeout=1e3 * PATIENCE)
+    banner = other.locator("#banner", has_text="in another window")
+    banner.wait_for(timeout=1e3 * PATIENCE)
     other.keyboard.press("Enter")
     other.close()
     page.bring_to_front()
