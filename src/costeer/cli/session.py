@@ -25,7 +25,7 @@ ACTIONS = ("new", "run", "status", "export", "withdraw", "power", "rehearse")
 
 
 def session(
-    action: Annotated[str, typer.Argument(help=", ".join(ACTIONS) + ".")],
+    action: Annotated[str, typer.Argument(help="One of " + ", ".join(ACTIONS) + ".")],
     folder: Annotated[Path, typer.Argument(help="Folder of the study.")],
     plan: Annotated[
         Path | None,
@@ -35,23 +35,24 @@ def session(
         str | None, typer.Option(help="With withdraw: whose data are deleted.")
     ] = None,
     wheel: Annotated[
-        str, typer.Option(help="With run: as `costeer drive --wheel`.")
+        str, typer.Option(help="With run: a steering wheel, as in `costeer drive --help`.")
     ] = "auto",
     head: Annotated[
-        str, typer.Option(help="With run: as `costeer drive --head`.")
+        str, typer.Option(help="With run: a head tracker, as in `costeer drive --help`.")
     ] = "none",
     port: Annotated[
-        int, typer.Option(help="With run: of the pages; 0 takes any free.")
+        int, typer.Option(help="With run: port of the pages; 0 takes any that is free.")
     ] = 8700,
     host: Annotated[
         str,
         typer.Option(
-            help="With run: to listen on; others than this computer need a token."
+            help="With run: address to serve the pages on; other computers than this "
+            "one need a token."
         ),
     ] = "127.0.0.1",
     browser: Annotated[
         bool,
-        typer.Option("--browser/--no-browser", help="With run: open the console."),
+        typer.Option("--browser/--no-browser", help="With run: open the console in a browser."),
     ] = True,
     to: Annotated[
         str, typer.Option("--format", help="With export: csv, bids, matlab, mcap, all.")
@@ -62,8 +63,8 @@ def session(
     haste: Annotated[
         float | None,
         typer.Option(
-            help="With rehearse, or run --wheel simulated:virtual: seconds of a drive "
-            "in a second."
+            help="With rehearse, and with run --wheel simulated:virtual: how many times as "
+            "fast as the clock drives go."
         ),
     ] = None,
     participants: Annotated[
@@ -71,34 +72,42 @@ def session(
     ] = 12,
     accidents: Annotated[
         float,
-        typer.Option(help="With rehearse: how often a minute something is killed."),
+        typer.Option(help="With rehearse: how many times a minute something is killed."),
     ] = 0.5,
     conditions: Annotated[
-        str, typer.Option(help="With rehearse: of the assisted trials, by commas.")
+        str, typer.Option(help="With rehearse: of the assisted trials, comma between.")
     ] = "",
     length: Annotated[
-        float, typer.Option(help="With rehearse: of a trial [m].")
+        float, typer.Option(help="With rehearse: length of a trial [m].")
     ] = 300.0,
     seed: Annotated[
-        int, typer.Option(help="With rehearse and power: of all that is random.")
+        int, typer.Option(help="With rehearse and power: seed of all that is random.")
     ] = 1,
     drivers: Annotated[
         int, typer.Option(help="With power: virtual drivers that drive the plan.")
     ] = 40,
     intention: Annotated[
-        str, typer.Option(help="With power: network or scripted.")
+        str, typer.Option(help="With power: who reads a lane change, network or scripted.")
     ] = "network",
 ) -> None:
     """Run a study with people: plan, questionnaires, drives, data.
 
-    `new` writes the plan of the paper's experiment into a folder; edit it. `run` shows
-    two addresses, of the participant's page and of the console.
+    `new` writes the plan of the paper's experiment into a folder; edit it, as
+    docs/session.md says. `power` predicts how many participants it takes. `run` serves
+    the participant's page and the experimenter's console and prints their addresses.
+    `status` says where everybody stands, `export` writes the data for other programs,
+    `withdraw` deletes all of a participant. `rehearse` has simulated participants go
+    through the paper's plan in a folder of its own. `costeer report` evaluates.
 
     Example:
         costeer session new my-study
+        costeer session power my-study
         costeer session run my-study
         costeer session status my-study
         costeer session export my-study --format bids --out shared
+        costeer session withdraw my-study --participant P01
+        costeer session rehearse my-rehearsal --participants 2
+        costeer report my-study
     """
     rehearsal = Rehearsal(participants, seed, accidents, haste, conditions, length)
     lab = _Lab(wheel, head, 1.0 if haste is None else haste)
@@ -266,9 +275,14 @@ def _status(folder: Path) -> None:
                 row["reason"],
             ]
         )
-    print_table(["participant", "row", "status", "at", "steps done", "reason"], rows)
+    heads = ["participant", "row of orders", "status", "at", "steps done", "reason"]
+    if rows:
+        print_table(heads, rows)
     gone = num_withdrawn(session)
     session.close()
+    if not rows:
+        note("costeer: nobody has begun yet; participants begin on the console of:")
+        note(f"costeer session run {folder}")
     if gone:
         note(f"costeer: {gone} withdrew; nothing of them is left")
 

@@ -54,8 +54,8 @@ class Session:
         plan_file = folder / PLAN_FILE
         if not plan_file.is_file():
             raise ValueError(
-                f"{folder} is no study with people: it has no {PLAN_FILE}; make one "
-                f"with: costeer session new {folder}"
+                f"{folder} holds no study with people, as there is no {PLAN_FILE} in "
+                f"it; make one with: costeer session new {folder}"
             )
         text = read_whole(plan_file)
         self.plan = parsed_plan(text, str(plan_file))

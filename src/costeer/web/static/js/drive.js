@@ -34,9 +34,10 @@ export class Drive {
    * @param {object} hello answer of `api/hello`
    * @param {object} options of the page
    * @param {string} query tokens for the server
+   * @param {Record<string, string>} [texts] words of a session for its participant
    */
-  constructor(hello, options, query) {
-    this.hud = new Hud();
+  constructor(hello, options, query, texts) {
+    this.hud = new Hud(texts);
     this.view = new View(byId("view"), hello, options);
     this.strip = new Strip(byId("signals"));
     this.controls = new Controls();

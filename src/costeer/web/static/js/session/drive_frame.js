@@ -12,6 +12,7 @@ import { words } from "./words.js";
 export class DriveFrame {
   /** @param {URLSearchParams} given options of the view and token, passed on */
   constructor(given) {
+    if (!given.has("clean")) given.set("clean", ""); // figures are for the experimenter
     const query = given.toString();
     this.address = `./drive${query ? `?${query}` : ""}`;
     this.frame = null;
@@ -60,15 +61,17 @@ export class DriveFrame {
       allow: "fullscreen; gamepad",
     });
     const { frame } = this;
+    frame.dataset.texts = toldOf(state);
+    frame.dataset.lang = state.language;
     frame.addEventListener("load", () => {
       if (this.drive && frame === this.frame) frame.focus();
     });
     document.body.append(frame);
   }
 
-  /** Let it be seen and driven; a page that has failed is loaded again. */
+  /** Let it be seen and driven; one that has failed, or has other words, is loaded again. */
   show(state) {
-    if (this.hasFailed) this.close();
+    if (this.hasFailed || this.frame?.dataset.texts !== toldOf(state)) this.close();
     if (!this.frame) this.open(state);
     this.frame.inert = false;
     document.body.classList.add("drives");
@@ -94,4 +97,10 @@ export class DriveFrame {
     this.frame?.remove();
     this.frame = null;
   }
+}
+
+/** What the page of the drive says to its participant. */
+function toldOf({ texts, step }) {
+  const waiting = texts[step.self_paced ? "drive_waiting_text" : "drive_held_text"];
+  return JSON.stringify({ ...texts, drive_waiting_text: waiting });
 }
