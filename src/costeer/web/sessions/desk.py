@@ -290,7 +290,7 @@ class Desk:
             ValueError: If the drive cannot be.
             OSError: If nothing can be written.
         """
-        plan, slot = self.session.plan_of(who), int(self._row(who)["slot"])
+        plan, slot = self.session.plan_of(who), int(self.session.person(who)["slot"])
         trial = trial_of(plan, step, slot)
         setup = DriveSetup(
             trial=trial,
@@ -320,10 +320,6 @@ class Desk:
             "head": None if setup.head is None else setup.head.tracker.kind,
             "checks": self.checked,
         }
-
-    def _row(self, participant: str) -> dict[str, Any]:
-        rows = self.session.people()
-        return next(row for row in rows if row["participant"] == participant)
 
     def _end(self, outcome: Outcome) -> None:
         """Keep how an attempt ended; called in a thread of the drive.
