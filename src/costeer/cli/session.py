@@ -35,10 +35,12 @@ def session(
         str | None, typer.Option(help="With withdraw: whose data are deleted.")
     ] = None,
     wheel: Annotated[
-        str, typer.Option(help="With run: a steering wheel, as in `costeer drive --help`.")
+        str,
+        typer.Option(help="With run: a steering wheel, as in `costeer drive --help`."),
     ] = "auto",
     head: Annotated[
-        str, typer.Option(help="With run: a head tracker, as in `costeer drive --help`.")
+        str,
+        typer.Option(help="With run: a head tracker, as in `costeer drive --help`."),
     ] = "none",
     port: Annotated[
         int, typer.Option(help="With run: port of the pages; 0 takes any that is free.")
@@ -52,7 +54,9 @@ def session(
     ] = "127.0.0.1",
     browser: Annotated[
         bool,
-        typer.Option("--browser/--no-browser", help="With run: open the console in a browser."),
+        typer.Option(
+            "--browser/--no-browser", help="With run: open the console in a browser."
+        ),
     ] = True,
     to: Annotated[
         str, typer.Option("--format", help="With export: csv, bids, matlab, mcap, all.")
@@ -72,7 +76,9 @@ def session(
     ] = 12,
     accidents: Annotated[
         float,
-        typer.Option(help="With rehearse: how many times a minute something is killed."),
+        typer.Option(
+            help="With rehearse: how many times a minute something is killed."
+        ),
     ] = 0.5,
     conditions: Annotated[
         str, typer.Option(help="With rehearse: of the assisted trials, comma between.")
@@ -87,7 +93,8 @@ def session(
         int, typer.Option(help="With power: virtual drivers that drive the plan.")
     ] = 40,
     intention: Annotated[
-        str, typer.Option(help="With power: who reads a lane change, network or scripted.")
+        str,
+        typer.Option(help="With power: who reads a lane change, network or scripted."),
     ] = "network",
 ) -> None:
     """Run a study with people: plan, questionnaires, drives, data.

@@ -190,6 +190,11 @@ class Store:
             except sqlite3.Error as error:
                 raise StoreError(f"{self.path} cannot be read: {error}") from error
 
+    @property
+    def changes(self) -> int:
+        """Rows changed since it was opened: what was read holds while it stays."""
+        return self._file.total_changes
+
     def put(self, table: str, row: Mapping[str, Any]) -> None:
         """Write a row, within a transaction; one with the same key is changed.
 

@@ -125,4 +125,5 @@ def check_attempts(folder: Path) -> None:
         *("emergency stop", "the session was closed"),
     ]
     assert {row["state"] for row in rows} == {"aborted"}
-    assert len(list((folder / "aborted").glob("*.parquet"))) == 2
+    kept = (folder / "aborted").glob("*-attempt?.parquet")
+    assert len(list(kept)) == 2

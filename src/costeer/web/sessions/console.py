@@ -39,6 +39,7 @@ class Console:
     def __init__(self, desk: Desk) -> None:
         self._desk, self._session = desk, desk.session
         self._checking = threading.Lock()
+        self._kept: tuple[tuple[int, str], dict[str, Any]] = (-1, ""), {}
 
     def shown(self) -> dict[str, Any]:
         """Everything the console shows."""
@@ -55,23 +56,36 @@ class Console:
                 "zone": datetime.now().astimezone().tzname(),
                 "participant": state["participant"],
                 "step": step,
-                "steps": self._all_steps(),
-                "people": self._people(),
+                **self._of_store(),
                 "languages": languages(self._session.folder),
                 "language": self._session.plan.language,
                 "planned": self._session.plan.participants,
-                "withdrawn": num_withdrawn(self._session),
-                "attempts": self._attempts(),
                 "checks": self._desk.checked,
                 "page_seen": time.monotonic() - self._desk.page_seen,
                 "disk": {"free": free, "enough": free > SCARCE},
-                "balance": self._balance(),
                 "processes": self._processes(),
                 "trouble": self._desk.trouble,
                 "wording": self._desk.wording.trouble,
                 "stopped": state["stopped"],
+            }
+
+    def _of_store(self) -> dict[str, Any]:
+        """What follows from the store alone, kept as long as nothing is written.
+
+        The console asks twice a second, in the middle of drives.
+        """
+        key = self._session.store.changes, self._desk.participant
+        if self._kept[0] != key:
+            told = {
+                "steps": self._all_steps(),
+                "people": self._people(),
+                "withdrawn": num_withdrawn(self._session),
+                "attempts": self._attempts(),
+                "balance": self._balance(),
                 "events": self._events(),
             }
+            self._kept = key, told
+        return self._kept[1]
 
     def _all_steps(self) -> list[dict[str, Any]]:
         if not self._desk.participant:
