@@ -12,9 +12,9 @@ from costeer.sessions.plan import (
     Plan,
     PlanStep,
     balance,
-    parsed_plan,
     session_steps,
 )
+from costeer.sessions.plan_file import parsed_plan
 
 ROOT = Path(__file__).parents[2]
 PAGE = (ROOT / "docs" / "session.md").read_text("utf-8")

@@ -140,22 +140,19 @@ def _new(folder: Path, plan: Path | None) -> None:
         OSError: If it cannot be written.
     """
     from costeer.base.files import read_whole, write_text
-    from costeer.sessions.plan import (
-        PLAN_FILE,
-        balance,
-        paper_plan_text,
-        parsed_plan,
-    )
+    from costeer.sessions.plan import PLAN_FILE, balance
+    from costeer.sessions.plan_file import check_words, paper_plan_text, parsed_plan
 
-    text = paper_plan_text() if plan is None else read_whole(plan).decode("utf-8")
+    text = paper_plan_text().encode() if plan is None else read_whole(plan)
     found = parsed_plan(text, str(plan or PLAN_FILE))
+    check_words(found, folder)
     target = folder / PLAN_FILE
     if target.exists():
         raise ValueError(
             f"{folder} has a {PLAN_FILE} already; edit that, or give another folder"
         )
     folder.mkdir(parents=True, exist_ok=True)
-    write_text(target, text)
+    write_text(target, text.decode("utf-8"))
     even = balance(found, range(1, found.participants + 1)).is_even
     told = "balanced" if even else "not balanced over so many"
     typer.echo(target)
@@ -175,6 +172,7 @@ class _Lab(NamedTuple):
 
 def _run(folder: Path, lab: _Lab, where: tuple[str, int], browser: bool) -> None:
     """Serve both pages until Ctrl-C."""
+    from costeer.sessions.plan_file import check_words
     from costeer.sessions.session import Session
     from costeer.study.folder import locked
     from costeer.web.security import access_for
@@ -188,6 +186,7 @@ def _run(folder: Path, lab: _Lab, where: tuple[str, int], browser: bool) -> None
         if hasattr(signal, name):
             signal.signal(getattr(signal, name), _stop)
     session = Session(folder)
+    check_words(session.plan, folder)
     _compile(session.plan, devices)
     with locked(folder):  # a second one would take running drives for aborted
         desk = Desk(session, devices)

@@ -93,7 +93,7 @@ def keep_going(page: Page, console: Page, metres: float = math.inf) -> None:
     """Wait for some metres or the end; a busy computer may pause it in between."""
     deadline = time.monotonic() + PATIENCE
     driven = "parseInt(document.querySelectorAll('#facts dd')[2].textContent)"
-    while page.locator("#drive").count():
+    while page.locator("#drive:not([inert])").count():
         if (console.evaluate(driven) or 0.0) > metres:
             return
         assert time.monotonic() < deadline
@@ -135,7 +135,7 @@ def test_session_of_two_drives_leaves_records_answers_and_measures(
         page.get_by_role("heading", name="Drive 2 of 2").wait_for()
         keep_picture(page, "participant")
         page.get_by_role("button", name="I am ready").click()
-        page.locator("#drive").wait_for()
+        page.locator("#drive:not([inert])").wait_for()
         wait_for(console, "!document.getElementById('start').disabled")
         wait_for(
             console, "document.getElementById('facts').textContent.includes('drives')"

@@ -35,6 +35,7 @@ async function start() {
 start().then(
   (page) => Object.defineProperty(globalThis, "costeer", { get: () => page.report }),
   (error) => {
+    globalThis.costeer = { state: "failed" };
     byId("counters").textContent = "";
     new Hud().message("The page could not start", [String(error.message ?? error)], true);
   },

@@ -12,8 +12,9 @@ const CRAWLING = 1;
 const KINDS = { ask: "QUESTIONS", consent: "CONSENT", instruct: "READING", break: "BREAK", done: "DONE" };
 
 /** The state in a word, and how it looks. */
-export function shownState({ step }) {
+export function shownState({ step, stopped }) {
   if (!step) return ["NOBODY", "none"];
+  if (stopped) return ["STOPPED", "failed"];
   if (!step.drive) return [KINDS[step.kind] ?? step.kind.toUpperCase(), step.kind];
   const { state } = step.drive;
   return [state.toUpperCase(), state];

@@ -120,8 +120,10 @@ export class Panels {
     const press = (label, act) => button(label, `${label} ${participant}`, act);
     const buttons = [];
     if (isHere) buttons.push(press("Leave", () => this.actions.tryTo(row, "leave")));
-    else if (status === "active") buttons.push(press("Go on", () => this.actions.tryTo(row, "begin", body)));
-    if (status === "active") buttons.push(press("Replace …", () => this.askReplace(participant)));
+    const hasStopped = status === "stopped" || status === "declined";
+    const mayGoOn = hasStopped || (status === "active" && !isHere);
+    if (mayGoOn) buttons.push(press("Go on", () => this.actions.tryTo(row, "begin", body)));
+    if (status === "active" || status === "stopped") buttons.push(press("Replace …", () => this.askReplace(participant)));
     buttons.push(press("Withdraw …", () => this.askWithdraw(participant)));
     row.append(make("div", { class: "row" }, ...buttons));
     return row;
