@@ -16,12 +16,7 @@ from costeer.drivers import (
     vision,
 )
 from costeer.drivers.arm import ArmCommand, ArmParameters, wanted_torque
-from costeer.drivers.decision import (
-    DecisionParameters,
-    DecisionState,
-    Draws,
-    Surroundings,
-)
+from costeer.drivers.decision import DecisionState, Draws
 from costeer.drivers.evasion import Evasion, EvasionParameters, EvasionState
 from costeer.drivers.gaze import GazeDraws, GazeParameters, GazeState
 from costeer.drivers.interface import (
@@ -33,6 +28,7 @@ from costeer.drivers.interface import (
     as_leader,
 )
 from costeer.drivers.longitudinal import LongitudinalParameters, LongitudinalState
+from costeer.drivers.overtaking import DecisionParameters, Surroundings
 from costeer.drivers.reliance import RelianceParameters, RelianceState
 from costeer.drivers.tracking import TrackingParameters, TrackingState
 from costeer.drivers.vision import VisionNoise, VisionParameters, VisionState
@@ -283,6 +279,48 @@ def feel(
 
 
 @compiled
+def resolve(
+    parameters: DriverParameters,
+    state: DriverState,
+    knowledge: Knowledge,
+    perception: Perception,
+    noise: DriverNoise,
+    dt: Real,
+) -> tuple[EvasionState, Evasion, DecisionState]:
+    """See a danger, or else decide; who has met a danger begins to plan anew."""
+    out = knowledge.road.overtaking_side
+    intended = decision.direction(state.decision, out)
+    steered = decision.steered_to(state.decision, intended)
+    evaded, evading = evasion.step(
+        parameters.evasion, state.evasion, perception, knowledge, steered, dt
+    )
+    decided = decide(parameters, state, knowledge, perception, noise, dt)
+    is_home = perception.measurement.lane == cruising_lane(knowledge.road)
+    calm = decision.resumed(state.decision, is_home)
+    return evaded, evading, xp.select(evading.active | evading.ends, calm, decided)
+
+
+@compiled
+def brake(
+    parameters: DriverParameters,
+    state: DriverState,
+    foot: LongitudinalState,
+    evading: Evasion,
+    measurement: Measurement,
+    dt: Real,
+) -> LongitudinalState:
+    """The foot, on the brake in an emergency."""
+    return longitudinal.braking_hard(
+        parameters.longitudinal,
+        foot,
+        state.longitudinal.wanted_acceleration,
+        xp.select(evading.brakes, parameters.evasion.braking, 0.0),
+        measurement.longitudinal_velocity,
+        dt,
+    )
+
+
+@compiled
 def act(
     parameters: DriverParameters,
     state: DriverState,
@@ -302,19 +340,9 @@ def act(
         dt: Control step [s].
     """
     measurement = perception.measurement
-    evaded, evading = evasion.step(
-        parameters.evasion,
-        state.evasion,
-        perception.around,
-        measurement,
-        knowledge.car,
-        knowledge.road.num_lanes,
-        dt,
+    evaded, evading, decided = resolve(
+        parameters, state, knowledge, perception, noise, dt
     )
-    decided = decide(parameters, state, knowledge, perception, noise, dt)
-    is_home = measurement.lane == cruising_lane(knowledge.road)
-    calm = decision.resumed(state.decision, is_home)
-    decided = xp.select(evading.active | evading.ends, calm, decided)
     direction = decision.direction(decided, knowledge.road.overtaking_side)
     head = look(parameters, state, decided, direction, noise, dt)
     aimed = aim(parameters, state, knowledge, measurement, decided, noise, dt)
@@ -322,23 +350,17 @@ def act(
     eyes, intended = see(parameters, state, knowledge, measurement, aimed, noise, dt)
     hands, command = feel(parameters, state, knowledge, perception, intended, dt)
     steered = decision.steered_to(decided, direction)
+    leaders = perception.leader, leader_in(perception, steered)
     foot = longitudinal.step(
         parameters.longitudinal,
         state.longitudinal,
         measurement,
-        (perception.leader, leader_in(perception, steered)),
+        leaders,
         decided,
         noise.speed,
         dt,
     )
-    foot = longitudinal.braking_hard(
-        parameters.longitudinal,
-        foot,
-        state.longitudinal.wanted_acceleration,
-        xp.select(evading.brakes, parameters.evasion.braking, 0.0),
-        measurement.longitudinal_velocity,
-        dt,
-    )
+    foot = brake(parameters, state, foot, evading, measurement, dt)
     new_state = DriverState(
         vision=eyes,
         reliance=hands,

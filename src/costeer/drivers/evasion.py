@@ -12,9 +12,11 @@ from typing import NamedTuple
 
 from costeer.base import array as xp
 from costeer.base.array import Flag, Real, compiled
-from costeer.plant.fleet import Neighbours
-from costeer.plant.following import LONGEST_GAP, LaneOutlook
+from costeer.drivers.interface import Knowledge, Perception
+from costeer.plant.following import LONGEST_GAP, Ahead, LaneOutlook
+from costeer.plant.outlook import Neighbours
 from costeer.plant.parameters import CarParameters
+from costeer.plant.road import lane_centre
 from costeer.sensing.measurement import Measurement
 
 
@@ -90,12 +92,41 @@ def initial_state() -> EvasionState:
     return EvasionState(noticed=0.0, evading=-1.0, side=0.0, target=0.0)
 
 
+class Danger(NamedTuple):
+    """What may be in the way.
+
+    Attributes:
+        ahead: The next thing in the way, in the lane that is steered to if there is
+            one.
+        beside: Whether it is in that lane and not in the car's own way.
+        own_centre: Lateral position of the centre of the lane the car is in [m].
+    """
+
+    ahead: Ahead
+    beside: Flag
+    own_centre: Real
+
+
+@compiled
+def danger_of(around: Neighbours, steered: Real, own_centre: Real) -> Danger:
+    """What may be in the way of a driver who steers to a side.
+
+    Args:
+        around: Cars and obstacles.
+        steered: Side of a lane change under way, -1 right, 0 none, +1 left [-].
+        own_centre: Lateral position of the centre of the lane the car is in [m].
+    """
+    target = xp.select(steered > 0.0, around.left, around.right).ahead
+    beside = (steered != 0.0) & (target.gap < around.own.ahead.gap)
+    ahead = xp.select(beside, target, around.own.ahead)
+    return Danger(ahead=ahead, beside=beside, own_centre=own_centre)
+
+
 @compiled
 def is_danger(
-    parameters: EvasionParameters, around: Neighbours, measurement: Measurement
+    parameters: EvasionParameters, ahead: Ahead, measurement: Measurement
 ) -> Flag:
     """Whether what is in the way asks for harder braking than following does."""
-    ahead = around.own.ahead
     closing = measurement.longitudinal_velocity - ahead.velocity
     room = xp.maximum(ahead.gap - 1.0, 0.1)
     needed = closing * closing / (2.0 * room)
@@ -129,45 +160,46 @@ def has_room(
 @compiled
 def swerve_target(
     parameters: EvasionParameters,
-    around: Neighbours,
+    danger: Danger,
     car: CarParameters,
     side: Real,
 ) -> Real:
-    """Lateral position beside the obstacle [m].
+    """Lateral position beside the obstacle, or in the own lane if it is beside [m].
 
     Args:
         parameters: Margin.
-        around: With the obstacle.
+        danger: The obstacle.
         car: The own one.
         side: To pass on [-].
     """
-    obstacle = around.own.ahead
-    beside = (obstacle.width + car.width) / 2.0 + parameters.margin
-    return obstacle.lateral + side * beside
+    obstacle = danger.ahead
+    away = (obstacle.width + car.width) / 2.0 + parameters.margin
+    passed = obstacle.lateral + side * away
+    return xp.select(danger.beside, danger.own_centre, passed)
 
 
 @compiled
 def chosen_side(
-    around: Neighbours,
+    danger: Danger,
     measurement: Measurement,
     left_free: Flag,
     right_free: Flag,
 ) -> Real:
     """Side to swerve to [-]: the free one that is nearer, 0 if none is."""
-    leans_left = measurement.lateral_position >= around.own.ahead.lateral
+    leans_left = measurement.lateral_position >= danger.ahead.lateral
     nearer = xp.select(leans_left, 1.0, -1.0)
     only = xp.select(left_free, 1.0, xp.select(right_free, -1.0, 0.0))
-    return xp.select(left_free & right_free, nearer, only)
+    both = (left_free & right_free) | danger.beside
+    return xp.select(both, nearer, only)
 
 
 @compiled
 def step(
     parameters: EvasionParameters,
     state: EvasionState,
-    around: Neighbours,
-    measurement: Measurement,
-    car: CarParameters,
-    num_lanes: Real,
+    seen: Perception,
+    known: Knowledge,
+    steered: Real,
     dt: Real,
 ) -> tuple[EvasionState, Evasion]:
     """Notice, react, calm down.
@@ -175,22 +207,23 @@ def step(
     Args:
         parameters: Of this driver.
         state: Of the danger.
-        around: Cars and obstacles.
-        measurement: Of the own car.
-        car: The own one.
-        num_lanes: Of the road [-].
+        seen: Cars, obstacles and the own motion.
+        known: Car and road.
+        steered: Side of a lane change under way, -1 right, 0 none, +1 left [-].
         dt: Control step [s].
     """
-    danger = is_danger(parameters, around, measurement)
+    around, measurement = seen.around, seen.measurement
+    centre = lane_centre(known.road, measurement.lane)
+    threat = danger_of(around, steered, centre)
+    danger = is_danger(parameters, threat.ahead, measurement)
     active = state.evading >= 0.0
     noticed = xp.select(danger, state.noticed + dt, 0.0)
     begins = danger & xp.logical_not(active) & (noticed >= parameters.reaction_time)
     lane = measurement.lane
-    left = has_room(
-        parameters, around.left, around.own, measurement, lane < num_lanes - 1.0
-    )
+    has_left = lane < known.road.num_lanes - 1.0
+    left = has_room(parameters, around.left, around.own, measurement, has_left)
     right = has_room(parameters, around.right, around.own, measurement, lane > 0.0)
-    side = chosen_side(around, measurement, left, right)
+    side = chosen_side(threat, measurement, left, right)
     since = xp.select(active, state.evading + dt, -1.0)
     over = active & (since >= parameters.calm_after) & xp.logical_not(danger)
     new = EvasionState(
@@ -198,10 +231,10 @@ def step(
         evading=xp.select(begins, 0.0, xp.select(over, -1.0, since)),
         side=xp.select(begins, side, state.side),
         target=xp.select(
-            begins, swerve_target(parameters, around, car, side), state.target
+            begins, swerve_target(parameters, threat, known.car, side), state.target
         ),
     )
-    ahead, busy = around.own.ahead, new.evading >= 0.0
+    ahead, busy = threat.ahead, new.evading >= 0.0
     nearing = measurement.longitudinal_velocity > ahead.velocity
     return new, Evasion(
         active=busy,

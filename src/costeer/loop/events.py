@@ -12,11 +12,10 @@ from costeer.plant.fleet import (
     Car,
     Fleet,
     FleetParameters,
-    Spot,
     initial_fleet,
-    outlook,
     with_ego,
 )
+from costeer.plant.outlook import Spot, outlook
 from costeer.plant.parameters import CarParameters, RoadParameters
 from costeer.plant.place import (
     BARRIER,

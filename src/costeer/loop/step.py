@@ -36,7 +36,7 @@ from costeer.loop.parameters import DT, LoopParameters
 from costeer.methods.interface import Rule
 from costeer.plant import world
 from costeer.plant.alignment import bend_at
-from costeer.plant.fleet import neighbours
+from costeer.plant.outlook import neighbours
 from costeer.plant.parameters import CarParameters, ColumnParameters
 from costeer.plant.place import NOWHERE, Place
 from costeer.plant.road import cruising_lane, lane_centre

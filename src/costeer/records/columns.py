@@ -38,9 +38,6 @@ CAR_PREFIX = "car_"
 
 ADDED_PREFIXES = (METHOD_PREFIX, CAR_PREFIX)
 
-CAR_SIGNALS = ("position", "lateral", "velocity")
-"""What a record says of each other car, in this order."""
-
 
 class Column(NamedTuple):
     """One column of a trial record.
@@ -375,26 +372,6 @@ COLUMNS: tuple[Column, ...] = (
 
 COLUMN_NAMES: tuple[str, ...] = tuple(column.name for column in COLUMNS)
 COLUMNS_BY_NAME: dict[str, Column] = {column.name: column for column in COLUMNS}
-
-
-def car_columns(num_cars: int) -> tuple[Column, ...]:
-    """Where each of the other cars is; NaN while it is not on the road."""
-    said = (
-        ("m", "middle of car {} along the road", "same"),
-        ("m", "of car {} from the left lane's centre, left positive", "reflected"),
-        ("m/s", "velocity of car {} along the road", "same"),
-    )
-    return tuple(
-        Column(
-            f"{CAR_PREFIX}{car:02d}_{name}",
-            unit,
-            "float64",
-            text.format(car),
-            mirrored=mirrored,  # type: ignore[arg-type]  # one of the words above
-        )
-        for car in range(1, num_cars + 1)
-        for name, (unit, text, mirrored) in zip(CAR_SIGNALS, said, strict=True)
-    )
 
 
 def with_method_columns(added: Sequence[Column]) -> tuple[Column, ...]:
