@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from costeer.base import array as xp
-from costeer.base.array import Real, compiled
+from costeer.base.array import Flag, Real, compiled
 from costeer.drivers import (
     decision,
     evasion,
@@ -243,6 +243,12 @@ def leader_in(perception: Perception, direction: Real) -> LeaderState:
 
 
 @compiled
+def unless(unseen: Flag, leader: LeaderState) -> LeaderState:
+    """The leader, if the driver has had the time to see it."""
+    return leader._replace(present=leader.present & xp.logical_not(unseen))
+
+
+@compiled
 def feel(
     parameters: DriverParameters,
     state: DriverState,
@@ -350,7 +356,10 @@ def act(
     eyes, intended = see(parameters, state, knowledge, measurement, aimed, noise, dt)
     hands, command = feel(parameters, state, knowledge, perception, intended, dt)
     steered = decision.steered_to(decided, direction)
-    leaders = perception.leader, leader_in(perception, steered)
+    leaders = (
+        unless(evading.unseen, perception.leader),
+        unless(evading.unseen, leader_in(perception, steered)),
+    )
     foot = longitudinal.step(
         parameters.longitudinal,
         state.longitudinal,

@@ -34,8 +34,6 @@ METHOD_PREFIX = "method_"
 """How the names of columns begin that a method adds to those of every record."""
 
 CAR_PREFIX = "car_"
-"""How the names of columns begin that say where another car is."""
-
 ADDED_PREFIXES = (METHOD_PREFIX, CAR_PREFIX)
 
 
@@ -350,20 +348,14 @@ COLUMNS: tuple[Column, ...] = (
         stepped=True,
         before=0.0,
     ),
-    Column(
-        "road_curvature",
-        "1/m",
-        "float64",
-        "of the left lane's centre at the car, left positive",
-        "measurement.road_curvature",
-        mirrored="flipped",
-        before=0.0,
-    ),
+    _measured(
+        "road_curvature", "1/m", "of the left lane's centre at the car", "flipped"
+    )._replace(before=0.0),
     Column(
         "contact",
         "-",
         "int8",
-        "what the car touches: 0 nothing, 1 rumble strip, 2 barrier, 3 another car",
+        "0, or what the car touches: 1 rumble strip, 2 barrier, 3 another car",
         "events.contact",
         stepped=True,
         before=0.0,
@@ -378,8 +370,7 @@ def with_method_columns(added: Sequence[Column]) -> tuple[Column, ...]:
     """The columns of every record and those that a method or a scenario adds.
 
     Args:
-        added: Columns of the method, names with the prefix `method_`, and of other
-            cars, with the prefix `car_`.
+        added: Their names begin with `method_` or `car_`.
 
     Raises:
         ValueError: If a column cannot be one of a method, saying which and why.

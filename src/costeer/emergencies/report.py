@@ -1,0 +1,250 @@
+"""The report on emergencies: page, tables, figures."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+
+from costeer.base.files import write_text
+from costeer.drivers.population import POPULATION_VERSION
+from costeer.emergencies.design import SITUATIONS, SPEEDS, TIMES, Settings
+from costeer.emergencies.figures import behaviour, collisions, conditions_of
+from costeer.emergencies.outcome import EmergencyRow
+from costeer.emergencies.run import WORST, worst_name, worst_of, write_outcome
+from costeer.methods.conditions import MANUAL
+from costeer.pages.frame import Section, picture, render_page, write_figures
+from costeer.pages.style import styled
+from costeer.pages.tables import Table, versions_table
+
+REPORT_FILE = "report.html"
+SUMMARY_TITLE = "Collisions and behaviour"
+
+_CAUTION = (
+    "These are virtual drivers.",
+    "Their evasive manoeuvre was set on manual driving: a prediction, which people "
+    "must test.",
+)
+
+Rows = Sequence[EmergencyRow]
+
+
+def write_report(folder: Path, settings: Settings, rows: Rows) -> Path:
+    """Write `report.html`, `emergencies.csv`, `figures/` and the worst records.
+
+    Args:
+        folder: Of `run.prepare`.
+        settings: As they were driven.
+        rows: All drives.
+
+    Returns:
+        Path of the page.
+
+    Raises:
+        OSError: If a file cannot be written.
+    """
+    write_outcome(folder, settings, rows)
+    with styled():
+        pictures = [picture(collisions(rows)), picture(behaviour(rows))]
+    write_figures(folder / "figures", pictures)
+    sections = (
+        Section(
+            "collisions",
+            "Collisions",
+            (
+                "What a drive was meant to come to is planned; what it came to is read "
+                "from mode and verdict when the obstacle appeared.",
+            ),
+            (pictures[0], _collision_table(rows), _situation_table(rows)),
+        ),
+        Section(
+            "behaviour",
+            "Drivers and guidance",
+            (),
+            (pictures[1], _behaviour_table(rows)),
+        ),
+        Section("worst", "The worst cases", _worst_words(rows), (_worst_table(rows),)),
+        Section("made", "How this was made", (), (versions_table(),)),
+    )
+    words = {
+        "title": "Emergencies",
+        "heading": "Emergencies with shared steering",
+        "subtitle": f"costeer, population {POPULATION_VERSION}, seed {settings.seed}",
+        "looked_at": _looked_at(settings, rows),
+        "outcomes": _outcomes(rows),
+        "caution": _CAUTION,
+    }
+    write_text(folder / REPORT_FILE, render_page("judgement.html", sections, words))
+    return folder / REPORT_FILE
+
+
+def _looked_at(settings: Settings, rows: Rows) -> list[str]:
+    speeds = " and ".join(f"{each * 3.6:.0f}" for each in SPEEDS)
+    times = ", ".join(f"{each:g}" for each in TIMES)
+    return [
+        f"{settings.drivers} virtual drivers at {speeds} km/h, {len(rows)} drives.",
+        f"An obstacle half a lane wide appeared {times} s ahead, in the lane driven in "
+        "or changed to; in half of the drives a car drove in the other lane.",
+        f"Conditions: {', '.join(conditions_of(rows))}; method {settings.method}.",
+    ]
+
+
+def _share(rows: Rows) -> str:
+    hit = sum(row.collided for row in rows)
+    return f"{hit} of {len(rows)}" if rows else "–"
+
+
+def _outcomes(rows: Rows) -> list[tuple[str, str]]:
+    told = []
+    for name in conditions_of(rows):
+        own = [row for row in rows if row.condition == name]
+        parts = [
+            f"{_share([r for r in own if r.time_to_collision == time])} at {time:g} s"
+            for time in TIMES
+        ]
+        told.append((f"Collisions, {name}", "; ".join(parts) + "."))
+    return told
+
+
+def _collision_table(rows: Rows) -> Table:
+    cells = []
+    for name in conditions_of(rows):
+        for number, words in SITUATIONS.items():
+            own = [
+                r for r in rows if (r.condition, r.meant_situation) == (name, number)
+            ]
+            if not own:
+                continue
+            for is_free in (True, False):
+                some = [r for r in own if r.lane_is_free == is_free]
+                shares = [
+                    _share([r for r in some if r.time_to_collision == time])
+                    for time in TIMES
+                ]
+                beside = "free" if is_free else "a car"
+                cells.append((name, f"({number}) {words}", beside, *shares))
+    return Table(
+        name="collision-table",
+        title="Collisions by condition, situation and time to collision",
+        note="Both speeds together.",
+        header=(
+            "Condition",
+            "Meant situation",
+            "Lane beside",
+            *(f"{time:g} s" for time in TIMES),
+        ),
+        rows=tuple(cells),
+        num_labels=3,
+    )
+
+
+def _situation_table(rows: Rows) -> Table:
+    cells = []
+    for name in conditions_of(rows):
+        if name == MANUAL:
+            continue
+        for meant in SITUATIONS:
+            own = [r for r in rows if (r.condition, r.meant_situation) == (name, meant)]
+            counts = [str(sum(r.situation == each for r in own)) for each in SITUATIONS]
+            cells.append((name, f"({meant})", *counts))
+    return Table(
+        name="situations",
+        title="Situations that the drives came to",
+        note="By mode and verdict of the guidance when the obstacle appeared.",
+        header=("Condition", "Meant", *(f"came to ({each})" for each in SITUATIONS)),
+        rows=tuple(cells),
+        num_labels=2,
+    )
+
+
+def _median(values: Sequence[float], factor: float = 1.0, digits: int = 2) -> str:
+    known = [factor * value for value in values if np.isfinite(value)]
+    return f"{np.median(known):.{digits}f}" if known else "–"
+
+
+def _behaviour_table(rows: Rows) -> Table:
+    cells = []
+    for name in conditions_of(rows):
+        for number in SITUATIONS:
+            own = [
+                r for r in rows if (r.condition, r.meant_situation) == (name, number)
+            ]
+            if not own:
+                continue
+            degrees = 180.0 / np.pi
+            cells.append(
+                (
+                    name,
+                    f"({number})",
+                    _median([r.reaction_time for r in own]),
+                    _median([r.smallest_distance for r in own]),
+                    _median([r.smallest_time for r in own]),
+                    _median([r.peak_wheel_angle for r in own], degrees, 0),
+                    _median([r.peak_wheel_rate for r in own], degrees, 0),
+                    _median([r.peak_driver_torque for r in own], 1.0, 1),
+                    _median([r.haptic_gain for r in own]),
+                    _median([r.gain_at_obstacle for r in own]),
+                    f"{sum(r.left_road for r in own)} of {len(own)}",
+                    _median([r.time_to_settle for r in own], 1.0, 1),
+                )
+            )
+    return Table(
+        name="behaviour-table",
+        title="Medians over drives",
+        note="A driver who never settled has no time to settle.",
+        header=(
+            "Condition",
+            "Situation",
+            "Reaction [s]",
+            "Smallest distance [m]",
+            "Smallest time [s]",
+            "Peak angle [°]",
+            "Peak rate [°/s]",
+            "Peak torque [N·m]",
+            "Gain at appearance",
+            "Gain at obstacle",
+            "Over the outer line",
+            "Settled after [s]",
+        ),
+        rows=tuple(cells),
+        num_labels=2,
+    )
+
+
+def _worst_words(rows: Rows) -> tuple[str, ...]:
+    if not worst_of(rows):
+        return ("Nobody hit anything.",)
+    return (
+        "Of each condition and situation, the collision that had the most time. "
+        f"Replay one with `costeer replay {WORST}/NAME`.",
+    )
+
+
+def _worst_table(rows: Rows) -> Table:
+    cells = [
+        (
+            worst_name(row),
+            row.hit,
+            f"{row.speed * 3.6:.0f}",
+            f"{row.time_to_collision:g}",
+            _median([row.reaction_time]),
+            _median([row.haptic_gain]),
+        )
+        for row in worst_of(rows)
+    ]
+    return Table(
+        name="worst-table",
+        title="Records of the worst cases",
+        note="",
+        header=(
+            "Record",
+            "Hit",
+            "Speed [km/h]",
+            "Time left [s]",
+            "Reaction [s]",
+            "K_h",
+        ),
+        rows=tuple(cells),
+        num_labels=2,
+    )
