@@ -54,6 +54,7 @@ def collisions(rows: Rows) -> Exhibit:
         axes.set_title(f"({number}) {words}", fontsize=8)
         axes.set_ylim(-4.0, 104.0)
         axes.set_xticks(TIMES)
+        axes.set_xlim(TIMES[0] - 0.3, TIMES[-1] + 0.3)
         axes.set_xlabel("Time to collision at appearance [s]")
         axes.set_ylabel("Collisions [%]")
     handles, labels = grid[0][0].get_legend_handles_labels()
@@ -96,8 +97,8 @@ def _shares(axes: Axes, rows: Rows, name: str, place: int) -> None:
 
 def behaviour(rows: Rows) -> Exhibit:
     """Reaction, wheel rate, driver torque and gain, by condition and situation."""
-    figure = new_figure(FULL_WIDTH_MM, 60.0)
-    margins = Margins(left=14.0, right=3.0, top=8.0, bottom=11.0, between_columns=12.0)
+    figure = new_figure(FULL_WIDTH_MM, 64.0)
+    margins = Margins(left=14.0, right=3.0, top=12.0, bottom=11.0, between_columns=12.0)
     line = panels(figure, 1, 4, margins)[0]
     quantities = (
         ("reaction_time", 1.0, "Reaction time [s]"),
@@ -113,7 +114,7 @@ def behaviour(rows: Rows) -> Exhibit:
         axes.set_xlabel("Situation")
         panel_letter(axes, letter)
     handles, labels = line[0].get_legend_handles_labels()
-    line[1].legend(handles, labels, loc="upper center", fontsize=6)
+    figure.legend(handles, labels, loc="upper right", ncol=len(labels))
     return Exhibit(
         "behaviour",
         "What driver, wheel and guidance did",
@@ -155,3 +156,5 @@ def _spreads(axes: Axes, rows: Rows, quantity: str, factor: float) -> None:
             linestyle="none",
         )
     axes.set_xticks(list(SITUATIONS))
+    axes.set_xlim(0.5, len(SITUATIONS) + 0.5)
+    axes.set_ylim(bottom=0.0)

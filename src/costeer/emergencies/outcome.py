@@ -119,7 +119,7 @@ def outcome_of(
         peak_driver_torque=float(np.abs(after["driver_torque"][:met]).max()),
         haptic_gain=float(after["haptic_gain"][0]),
         gain_at_obstacle=float(after["haptic_gain"][passed]),
-        left_road=bool((after["contact"] > 0).any()) or _outside(after),
+        left_road=_outside(after),
         time_to_settle=_time_to_settle(after, passed),
     )
 

@@ -96,14 +96,19 @@ def _share(rows: Rows) -> str:
 
 
 def _outcomes(rows: Rows) -> list[tuple[str, str]]:
+    """Collisions of all conditions side by side, for each situation."""
     told = []
-    for name in conditions_of(rows):
-        own = [row for row in rows if row.condition == name]
-        parts = [
-            f"{_share([r for r in own if r.time_to_collision == time])} at {time:g} s"
-            for time in TIMES
-        ]
-        told.append((f"Collisions, {name}", "; ".join(parts) + "."))
+    for number, words in SITUATIONS.items():
+        parts = []
+        for name in conditions_of(rows):
+            own = [
+                row
+                for row in rows
+                if (row.condition, row.meant_situation) == (name, number)
+            ]
+            if own:
+                parts.append(f"{name} {_share(own)}")
+        told.append((f"Collisions, ({number}) {words}", "; ".join(parts) + "."))
     return told
 
 
@@ -217,7 +222,7 @@ def _worst_words(rows: Rows) -> tuple[str, ...]:
         return ("Nobody hit anything.",)
     return (
         "Of each condition and situation, the collision that had the most time. "
-        f"Replay one with `costeer replay {WORST}/NAME`.",
+        f"To replay one: costeer replay {WORST}/NAME.",
     )
 
 
