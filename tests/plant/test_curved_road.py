@@ -98,7 +98,8 @@ def test_the_curved_road_is_the_plane_seen_along_the_road(name: str) -> None:
         turned = max(turned, abs(heading - flat.yaw_angle))
     lateral = [state.lateral_position for state in bent]
     assert bent[-1].longitudinal_position > STATIONS[-1]
-    assert min(lateral) < -2.5 and max(lateral) > -1.0
+    assert min(lateral) < -2.5
+    assert max(lateral) > -1.0
     print(f"{name}: {apart * 1e3:.3f} mm, {turned * 1e6:.2f} microrad")
     # The bend is held, and its slope, for a step of 0.4 m: behind a station the road's
     # direction is off by 0.4² / 2 of the step of the slope, 1.4 microrad, at most.
