@@ -40,6 +40,7 @@ UNPLANNED = {
     "driver_torque",
     "head_yaw",
     "distance_to_adjacent_lane",
+    "road_curvature_slope",
 }
 """What no plan is made of."""
 
