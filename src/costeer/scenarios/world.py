@@ -33,8 +33,9 @@ from costeer.scenarios.definition import (
     Road,
     Scenario,
     When,
+    size_of,
+    speed_of,
 )
-from costeer.scenarios.reading import size_of, speed_of
 
 _STREAM = 7
 """Of the random numbers of the other cars, apart from those of the driver."""
