@@ -67,13 +67,13 @@ _HEAD = """\
 #   costeer scenario show FILE     all values, also those that are not written here
 #   costeer scenario preview FILE --out FILE.svg
 #   costeer simulate --scenario FILE --out trial.parquet
-# Lengths are in metres, times in seconds, speeds have a unit; left is positive, and lane
-# 0 is the right one. What has a # before it is an example: take the # away to use it.
+# Lengths are in metres, times in seconds, speeds have a unit; left is positive, and
+# lane 0 is the right one. What has a # before it below is an example: take it away.
 """
 
 _ROAD = """\
-  # Where the curvature changes; between two stations it changes evenly (a clothoid), and
-  # a station without a radius is straight. A positive radius is a curve to the left.
+  # Where the curvature changes; between two stations it changes evenly (a clothoid).
+  # A station without a radius is straight; a positive radius is a curve to the left.
 """
 _BEND = """\
   # stations:
@@ -90,8 +90,8 @@ overtaking: {cars: 1, first: 200, spacing: 2000, ahead: 70}
 # Cars all about that follow (IDM) and change lanes (MOBIL).
 # stream: {cars: 12, speed: 75 km/h, reach: 300, trucks: 0.1}
 
-# Single cars and obstacles: kind car, truck or obstacle. A moment (when, appears) is one
-# of time, place (of the driven car), gap (to the actor) and time_to_collision.
+# Single cars and obstacles: kind car, truck or obstacle. A moment (when, appears) is
+# one of time, place (of the driven car), gap (to the actor) and time_to_collision.
 # actors:
 #   - name: cuts in
 #     lane: 0
