@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from costeer.plant.alignment import MOST_STATIONS
 from costeer.scenarios.definition import Bent
+from costeer.scenarios.world import curvatures
 
 Numbers = NDArray[np.float64]
 
@@ -95,10 +96,12 @@ class Fit(NamedTuple):
 
     Attributes:
         stations: Between them the curvature is linear.
+        length: Of the line, in full millimetres [m].
         errors: Against the line.
     """
 
     stations: tuple[Bent, ...]
+    length: float
     errors: Errors
 
 
@@ -111,11 +114,11 @@ def fitted(line: Line) -> Fit:
     half = SMOOTHED / 2.0
     turned = _heading(line, places + half) - _heading(line, places - half)
     bends = turned / SMOOTHED
-    end, found = math.floor(line.length * 1000.0) / 1000.0, []
+    end, found = math.floor(line.length * 1000.0 + 0.01) / 1000.0, []
     for tolerance in _TOLERANCES:
         kept = _knots(places, bends, tolerance)
         stations = [_station(min(float(places[k]), end), float(bends[k])) for k in kept]
-        found.append(Fit(tuple(stations), errors_of(line, stations)))
+        found.append(Fit(tuple(stations), end, errors_of(line, stations)))
         if found[-1].errors.stretch < CLOSE:
             return found[-1]
     return min(found, key=lambda each: each.errors.stretch)
@@ -164,10 +167,7 @@ def errors_of(line: Line, stations: Sequence[Bent]) -> Errors:
     places = np.linspace(0.0, line.length, count + 1)
     step = line.length / count
     true = _heading(line, places)
-    bends = np.zeros_like(places)
-    if stations:
-        at = [each.at for each in stations]
-        bends = np.interp(places, at, [1.0 / each.radius for each in stations])
+    bends = curvatures(stations, places)
     turned = np.cumsum((bends[1:] + bends[:-1]) / 2.0 * step)
     few = max(int(SMOOTHED / step), 1)
     headings = np.concatenate([[0.0], turned])

@@ -118,7 +118,7 @@ def read_road(path: Path, wanted: str = "", against: bool = False) -> Imported:
     widths = np.concatenate([each.widths for each in strips], axis=1)
     limit, limit_notes = _limit(road)
     made = Road(
-        length=math.floor(line.length * 1000.0) / 1000.0,
+        length=fit.length,
         lanes=len(driven.chains),
         lane_width=round(float(widths.mean()), 3),
         shoulder=_shoulder(strips),
