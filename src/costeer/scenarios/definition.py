@@ -9,6 +9,7 @@ left is positive.
 from __future__ import annotations
 
 import math
+import re
 from typing import NamedTuple
 
 KINDS = {"car": (4.5, 1.8), "truck": (12.0, 2.5), "obstacle": (1.0, 1.75)}
@@ -224,3 +225,33 @@ class Scenario(NamedTuple):
     events: tuple[Event, ...] = ()
     zones: tuple[Zone, ...] = ()
     after_collision: str = "end"
+
+
+def speed_of(text: str) -> float:
+    """A speed [m/s] from "80 km/h", "50 mph" or "22 m/s"; a bare number is in m/s.
+
+    Raises:
+        ValueError: If it is none.
+    """
+    found = re.fullmatch(r"\s*([-+0-9.eE]+)\s*(km/h|m/s|mph|)\s*", text)
+    try:
+        value = float(found[1]) if found else math.nan
+    except ValueError:
+        value = math.nan
+    if not found or not math.isfinite(value):
+        raise ValueError(f"{text!r} is no speed; give one as 80 km/h or 22 m/s")
+    return value * {"km/h": 1 / 3.6, "mph": 0.44704}.get(found[2], 1.0)
+
+
+def size_of(actor: Actor) -> tuple[float, float]:
+    """Length and width of an actor [m]."""
+    length, width = KINDS[actor.kind]
+    return (
+        length if math.isnan(actor.length) else actor.length,
+        width if math.isnan(actor.width) else actor.width,
+    )
+
+
+def home_lane(road: Road) -> int:
+    """The lane that one drives in when nobody is overtaken."""
+    return road.lanes - 1 if road.traffic == "left" else 0
