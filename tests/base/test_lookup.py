@@ -81,11 +81,15 @@ def test_an_element_is_a_plain_number() -> None:
 
 
 class Inner(NamedTuple):
+    """A record within another."""
+
     speed: float
     gap: float
 
 
 class Outer(NamedTuple):
+    """A record with another in it."""
+
     first: float
     inner: Inner
     last: float

@@ -162,14 +162,10 @@ def aim(
     road = knowledge.road
     out = (decided.phase == decision.CHANGING) | (decided.phase == decision.PASSING)
     away = xp.select(out, road.overtaking_side, 0.0)
-    path = tracking.planned(
-        parameters.tracking,
-        road,
-        measurement,
-        cruising_lane(road) + away,
-        decided.change_duration,
-    )
-    return wandered._replace(path=xp.select(decided.started, path, wandered.path))
+    lane = cruising_lane(road) + away
+    given = parameters.tracking, road, measurement, lane, decided.change_duration
+    path = xp.when(decided.started, tracking.planned, given, wandered.path)
+    return wandered._replace(path=path)
 
 
 @compiled
@@ -181,16 +177,12 @@ def swerve(
     evading: Evasion,
 ) -> TrackingState:
     """The aim in an emergency: beside the obstacle, and back into a lane after it."""
-    away = tracking.path_to(measurement, evading.target, parameters.evasion.duration)
-    back = tracking.planned(
-        parameters.tracking,
-        knowledge.road,
-        measurement,
-        measurement.lane,
-        parameters.decision.change_duration,
-    )
-    planned = xp.select(evading.ends, back, aimed.path)
-    return aimed._replace(path=xp.select(evading.steers, away, planned))
+    duration = parameters.decision.change_duration
+    home = parameters.tracking, knowledge.road, measurement, measurement.lane, duration
+    path = xp.when(evading.ends, tracking.planned, home, aimed.path)
+    away = measurement, evading.target, parameters.evasion.duration
+    path = xp.when(evading.steers, tracking.path_to, away, path)
+    return aimed._replace(path=path)
 
 
 @compiled

@@ -91,6 +91,12 @@ class Evasion(NamedTuple):
     target: Real
 
 
+CALM = Evasion(
+    unseen=False, active=False, brakes=False, steers=False, ends=False, target=0.0
+)
+"""Nothing is in the way."""
+
+
 @compiled
 def initial_state() -> EvasionState:
     """No danger."""
@@ -200,7 +206,7 @@ def chosen_side(
 
 
 @compiled
-def step(
+def alarmed(
     parameters: EvasionParameters,
     state: EvasionState,
     seen: Perception,
@@ -208,7 +214,7 @@ def step(
     steered: Real,
     dt: Real,
 ) -> tuple[EvasionState, Evasion]:
-    """Notice, react, calm down.
+    """Notice, react, calm down, where there is something in the way.
 
     Args:
         parameters: Of this driver.
@@ -252,3 +258,30 @@ def step(
         ends=over,
         target=new.target,
     )
+
+
+@compiled
+def step(
+    parameters: EvasionParameters,
+    state: EvasionState,
+    seen: Perception,
+    known: Knowledge,
+    steered: Real,
+    dt: Real,
+) -> tuple[EvasionState, Evasion]:
+    """Notice, react, calm down; nothing on an empty road.
+
+    Args:
+        parameters: Of this driver.
+        state: Of the danger.
+        seen: Cars, obstacles and the own motion.
+        known: Car and road.
+        steered: Side of a lane change under way, -1 right, 0 none, +1 left [-].
+        dt: Control step [s].
+    """
+    around = seen.around
+    nearest = xp.minimum(around.own.ahead.gap, around.left.ahead.gap)
+    nearest = xp.minimum(nearest, around.right.ahead.gap)
+    busy = (nearest < LONGEST_GAP) | (state.evading >= 0.0)
+    given = parameters, state, seen, known, steered, dt
+    return xp.when(busy, alarmed, given, (initial_state(), CALM))

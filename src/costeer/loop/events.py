@@ -15,7 +15,7 @@ from costeer.plant.fleet import (
     initial_fleet,
     with_ego,
 )
-from costeer.plant.outlook import Spot, outlook
+from costeer.plant.outlook import Spot, has_cars, outlook
 from costeer.plant.parameters import CarParameters, RoadParameters
 from costeer.plant.place import (
     BARRIER,
@@ -197,7 +197,9 @@ def contact_of(
         position=measurement.longitudinal_position,
         lateral=measurement.lateral_position,
     )
-    hit = hits_car(fleet, state, car, ego) | hits_leader(road, state.leader, car, ego)
+    given = fleet, state, car, ego
+    hit = xp.when(has_cars(fleet), hits_car, given, False)
+    hit = hit | hits_leader(road, state.leader, car, ego)
     now = xp.select(hit, CAR, ground)
     return xp.select(state.contact >= BARRIER, state.contact, now)
 

@@ -166,6 +166,9 @@ class Fleet(NamedTuple):
     cars: Numbers
 
 
+_UNUSED = packed(CarKind())
+
+
 def fleet_parameters(
     kinds: Sequence[CarKind], reach: float = 400.0, own: CarKind = OWN
 ) -> FleetParameters:
@@ -181,13 +184,18 @@ def fleet_parameters(
     """
     if len(kinds) > MOST_CARS:
         raise ValueError(f"there are {len(kinds)} other cars; give at most {MOST_CARS}")
-    unused = [CarKind()] * (MOST_CARS - len(kinds))
-    table = np.concatenate([packed(each) for each in (own, *kinds, *unused)])
+    table = np.tile(_UNUSED, SLOTS)
+    for place, kind in enumerate((own, *kinds)):
+        table[place * KINDS.width : (place + 1) * KINDS.width] = packed(kind)
     return FleetParameters(float(len(kinds) + 1), reach, table)
 
 
 NO_FLEET = fleet_parameters(())
 """An empty road."""
+
+
+_PLAIN = len(CarKind._fields) - 3
+"""Fields of a `CarKind` before its orders."""
 
 
 def _initial_car(kind: CarKind) -> Car:
@@ -203,12 +211,13 @@ def _initial_car(kind: CarKind) -> Car:
 
 def initial_fleet(parameters: FleetParameters) -> Fleet:
     """The cars before the first step; none has appeared."""
-    cars = [_initial_car(_read_kind(parameters.kinds, k)) for k in range(SLOTS)]
-    if isinstance(parameters.kinds, np.ndarray):
-        return Fleet(np.array(cars).ravel())
-    numpy: Any = sys.modules["jax.numpy"]
-    rows = numpy.asarray([numpy.stack([1.0 * each for each in car]) for car in cars])
-    return Fleet(rows.ravel())
+    known = isinstance(parameters.kinds, np.ndarray)
+    numpy: Any = np if known else sys.modules["jax.numpy"]
+    kinds = numpy.asarray(parameters.kinds).reshape(SLOTS, KINDS.width)
+    read = {name: kinds[:, k] for k, name in enumerate(CarKind._fields[:_PLAIN])}
+    said = _initial_car(CarKind(**read))  # of all cars at once
+    columns = [numpy.broadcast_to(each, SLOTS) for each in said]
+    return Fleet(numpy.stack(columns, axis=1).ravel())
 
 
 def with_ego(fleet: Fleet, ego: Car) -> Fleet:

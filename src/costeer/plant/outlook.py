@@ -10,7 +10,7 @@ import numpy as np
 from numba.extending import overload
 
 from costeer.base import array as xp
-from costeer.base.array import Real, compiled
+from costeer.base.array import Flag, Real, compiled
 from costeer.base.lookup import element
 from costeer.plant.fleet import (
     CARS,
@@ -166,13 +166,22 @@ class Neighbours(NamedTuple):
     wanted_side: Real = 0.0
 
 
+NOBODY = Neighbours()
+"""An empty road."""
+
+
+@compiled
+def has_cars(parameters: FleetParameters) -> Flag:
+    """Whether a scenario has other cars."""
+    return parameters.num_places > 1.0
+
+
 @compiled
 def neighbours(
     parameters: FleetParameters,
     fleet: Fleet,
     road: RoadParameters,
     lane: Real,
-    wanted_side: Real,
 ) -> Neighbours:
     """The cars about the driven one.
 
@@ -181,7 +190,6 @@ def neighbours(
         fleet: Where they are, the driven one too.
         road: Its lanes.
         lane: That the driven car is in [-].
-        wanted_side: Of a lane change that the scenario asks for [-].
     """
     ego: Car = _read_car(fleet.cars, 0)
     width = _read_kind(parameters.kinds, 0).width
@@ -190,5 +198,5 @@ def neighbours(
         own=outlook(parameters, fleet, path),
         left=lane_outlook(parameters, fleet, road, 0, lane + 1.0),
         right=lane_outlook(parameters, fleet, road, 0, lane - 1.0),
-        wanted_side=wanted_side,
+        wanted_side=0.0,
     )
