@@ -81,14 +81,14 @@ def test_an_element_is_a_plain_number() -> None:
 
 
 class Inner(NamedTuple):
-    """A record within another."""
+    """A record in a record."""
 
     speed: float
     gap: float
 
 
 class Outer(NamedTuple):
-    """A record with another in it."""
+    """A record with two more in it."""
 
     first: float
     inner: Inner

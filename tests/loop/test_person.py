@@ -59,23 +59,6 @@ def driven(parameters: Parameters, given: list[PersonInput]) -> NDArray[np.float
     return np.array(rows)
 
 
-def steered(parameters: Parameters, wanted: list[float]) -> NDArray[np.float64]:
-    """Rows of a drive on the pedal by hands that steer to lateral positions [m]."""
-    memory, rows = person_memory(IBHS, parameters), [np.zeros(len(ROW_COLUMNS))]
-    given = NOTHING_GIVEN._replace(grip=1.0, accelerator=0.6, leader_uniform=0.99)
-    for lateral in wanted:
-        off, yaw = (
-            column(rows[-1][None], n)[0] for n in ("lateral_position", "yaw_angle")
-        )
-        angle = float(np.clip(0.05 * (lateral - off) - 2.0 * yaw, -0.2, 0.2))
-        pack(memory.given, given._replace(intended_angle=angle))
-        control(memory, has_wheel=False)
-        rows.append(memory.row.copy())
-        for _ in range(parameters.plant_steps):
-            hands_tick(memory.plant, memory.motion, memory.held)
-    return np.array(rows[1:])
-
-
 def control(memory: PersonMemory, has_wheel: bool) -> None:
     TICK(
         memory.parameters,
@@ -261,16 +244,17 @@ def test_compiled_and_plain_ticks_agree() -> None:
 
 
 def test_leader_appears_and_its_zone_ends_when_the_car_has_settled_again() -> None:
-    setup = MANUAL._replace(events=True, length=8000.0, initial_offset=0.0)
+    setup = SETUP._replace(events=True, length=8000.0, trigger_times=())
     parameters = loop_parameters(setup)
+    # Nobody steers, and a car without width passes through its leader.
     early = parameters._replace(
-        traffic=parameters.traffic._replace(first_event=50.0, num_events=1.0)
+        traffic=parameters.traffic._replace(first_event=50.0, num_events=1.0),
+        car=parameters.car._replace(width=0.0),
     )
-    # Out of the leader's way after 4 s, past it, and back after 20 s.
-    rows = steered(early, [0.0] * 240 + [-3.0] * 960 + [0.0] * 600)
+    given = NOTHING_GIVEN._replace(accelerator=0.6, leader_uniform=0.99)
+    rows = driven(early, [given] * 1500)
     event = column(rows, "event")
     passed = column(rows, "lead_distance") < 0.0
-    assert column(rows, "contact").max() < 2.0
     assert event.max() == 1.0
     assert passed.any()
     assert event[-1] == 0.0
