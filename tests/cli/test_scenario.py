@@ -10,11 +10,14 @@ from costeer.cli import main
 from costeer.records.record import read_record
 from costeer.scenarios.opendrive.roads import read_road
 from costeer.scenarios.reading import read_scenario, shipped
-from tests.scenarios.roads import road, section, write
+from tests.scenarios.roads import road, write
 
 Captured = pytest.CaptureFixture[str]
 SHORT = ["--engine", "python", "--intention", "scripted"]
-BEND = '<geometry s="0" x="0" y="0" hdg="0" length="400"><arc curvature="0.01"/></geometry>'
+BEND = (
+    '<geometry s="0" x="0" y="0" hdg="0" length="400">'
+    '<arc curvature="0.01"/></geometry>'
+)
 
 OWN = """\
 name: own
@@ -73,10 +76,7 @@ def test_a_new_file_is_sound_and_never_replaces(
 def test_a_road_of_a_file_is_driven_as_fast_as_it_allows(
     tmp_path: Path, capsys: Captured
 ) -> None:
-    lanes = section(right='<lane id="-1" type="driving"><width sOffset="0" a="3.5" '
-                    'b="0" c="0" d="0"/></lane><lane id="-2" type="driving">'
-                    '<width sOffset="0" a="3.5" b="0" c="0" d="0"/></lane>')  # fmt: skip
-    file, made = write(tmp_path, road(BEND, lanes)), tmp_path / "bend.yaml"
+    file, made = write(tmp_path, road(BEND)), tmp_path / "bend.yaml"
     asked = ["scenario", "new", str(made), "--opendrive", str(file)]
     assert main([*asked, "--speed", "90km/h"]) == 2
     # 25² / 3 = 208 m.
