@@ -31,11 +31,11 @@ class Bent(NamedTuple):
 
     Attributes:
         at: Along the road [m].
-        radius: Of the left lane's centre, to the left positive; infinite: straight [m].
+        radius: Of the left lane's centre, to the left positive; missing: straight [m].
     """
 
     at: float
-    radius: float = math.inf
+    radius: float = math.nan
 
 
 class Road(NamedTuple):
@@ -213,6 +213,15 @@ class Scenario(NamedTuple):
         zones: Stretches for measures.
         after_collision: What a trial does after a collision: "end", or "restart" where
             a person drives.
+
+    Example:
+        >>> import costeer
+        >>> from costeer.scenarios.definition import Bent, Road
+        >>> bend = Road(length=600, stations=(Bent(100), Bent(200, radius=500)))
+        >>> mine = costeer.Scenario("bend", speed="80 km/h", road=bend)
+        >>> record = costeer.simulate("manual", scenario=mine, intention="off")
+        >>> record.metadata["scenario"]["name"]
+        'bend'
     """
 
     name: str
@@ -240,7 +249,16 @@ def speed_of(text: str) -> float:
         value = math.nan
     if not found or not math.isfinite(value):
         raise ValueError(f"{text!r} is no speed; give one as 80 km/h or 22 m/s")
-    return value * {"km/h": 1 / 3.6, "mph": 0.44704}.get(found[2], 1.0)
+    # 3.6 km/h are 1 m/s exactly; its inverse is no exact number.
+    return value / 3.6 if found[2] == "km/h" else value * _UNITS[found[2]]
+
+
+_UNITS = {"m/s": 1.0, "": 1.0, "mph": 0.44704}
+
+
+def curvature_of(station: Bent) -> float:
+    """Curvature at a station, left positive; 0 where the road is straight [1/m]."""
+    return 0.0 if math.isnan(station.radius) else 1.0 / station.radius
 
 
 def size_of(actor: Actor) -> tuple[float, float]:

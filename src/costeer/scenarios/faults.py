@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Iterator, Sequence
 from itertools import pairwise
@@ -19,6 +20,7 @@ from costeer.scenarios.definition import (
     Bent,
     Road,
     Scenario,
+    curvature_of,
     home_lane,
     speed_of,
 )
@@ -115,11 +117,11 @@ def _of_stations(road: Road) -> Iterator[Fault]:
                 f"the station at {station.at:g} m is not on the road, which has "
                 f"{road.length:g} m",
             )
-        if not abs(station.radius) > 0.0:
+        if station.radius == 0.0 or math.isinf(station.radius):
             told = f"a radius of {station.radius:g} m is none; leave it out where the"
             yield Fault(place, f"{told} road is straight")
         # Beyond this the lines beside the road would cross in the curve's middle.
-        if not abs(station.radius) > inner_side(road, station) + road.shoulder:
+        if abs(station.radius) <= inner_side(road, station) + road.shoulder:
             least = inner_side(road, station) + road.shoulder
             told = f"a curve of {station.radius:g} m is narrower than its own road"
             yield Fault(place, f"{told}; give more than {least:g} m")
@@ -138,11 +140,24 @@ def inner_side(road: Road, station: Bent) -> float:
     return lanes * road.lane_width
 
 
+def fastest(road: Road) -> float:
+    """Greatest speed that the curves of a road allow [m/s]."""
+    curves = [each for each in road.stations if curvature_of(each)]
+    radii = [abs(each.radius) - _inner_lane(road, each) for each in curves]
+    return math.sqrt(FASTEST_CORNERING * min(radii, default=math.inf))
+
+
+def _inner_lane(road: Road, station: Bent) -> float:
+    """From the left lane's centre to that of the innermost lane in a curve [m]."""
+    return inner_side(road, station) - road.lane_width / 2.0
+
+
 def faults_of_speed(scenario: Scenario, speed: float) -> Iterator[Fault]:
-    """Curves that are too tight for a speed [m/s], in the lane where they are."""
+    """Curves that are too tight for a speed [m/s], the tightest first."""
     tightest = speed * speed / FASTEST_CORNERING
-    for k, station in enumerate(scenario.road.stations):
-        beside = inner_side(scenario.road, station) - scenario.road.lane_width / 2.0
+    numbered = enumerate(scenario.road.stations)
+    for k, station in sorted(numbered, key=lambda each: -abs(curvature_of(each[1]))):
+        beside = _inner_lane(scenario.road, station)
         if abs(station.radius) - beside < tightest * (1.0 - 1e-9):
             inner = f" ({abs(station.radius) - beside:.4g} m in the inner lane)"
             yield Fault(

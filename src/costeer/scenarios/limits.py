@@ -124,7 +124,8 @@ def _is_bare(text: str) -> bool:
 
 def _number(place: Place, value: float, limits: Limits) -> Iterator[Fault]:
     if not limits.low <= value <= limits.high:
-        shown = min(max(value, -1e300), 1e300)  # whole numbers may be longer than that
+        whole = isinstance(value, int)  # which may be longer than a float can be
+        shown = min(max(value, -(10**300)), 10**300) if whole else value
         yield Fault(
             place,
             f"{place[-1]} is {shown:g}; give a number from {limits.low:g} to "

@@ -6,14 +6,14 @@ from collections.abc import Mapping
 from functools import cache, lru_cache
 from importlib.resources import files
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import yaml
 
 from costeer.base.described import nearest
 from costeer.base.files import read_whole
 from costeer.base.nested import filled, parsed_mapping
-from costeer.scenarios.definition import Scenario
+from costeer.scenarios.definition import Scenario, speed_of
 from costeer.scenarios.faults import faults, faults_of_speed
 from costeer.scenarios.limits import Place
 
@@ -77,6 +77,52 @@ def _found(given: str | Scenario) -> Scenario:
 def _remembered(scenario: Scenario) -> Scenario:
     """The scenario, if it can be; a study asks for the same one at every trial."""
     return checked(scenario)
+
+
+class Chosen(NamedTuple):
+    """A scenario with the length and speed that are driven.
+
+    Attributes:
+        scenario: Checked.
+        length: Of the course [m].
+        speed: Suggested, and at the start [m/s].
+        notes: What a user should know.
+    """
+
+    scenario: Scenario
+    length: float
+    speed: float
+    notes: tuple[str, ...]
+
+
+def chosen(given: str | Scenario, length: float | None, speed: float | None) -> Chosen:
+    """A scenario with length and speed; what is not given is its own.
+
+    Args:
+        given: A name, a file `NAME.yaml`, or itself.
+        length: Of the course [m].
+        speed: [m/s].
+
+    Raises:
+        ValueError: If there is none, or a curve is too tight for the speed.
+        OSError: If the file cannot be read.
+    """
+    scenario = scenario_named(given, speed)
+    own = scenario.road.length
+    driven = own if length is None else length
+    places = [(f"the {each.kind}", each.at) for each in scenario.events]
+    places += [(each.name, each.at) for each in scenario.actors]
+    places += [(f"zone {each.name}", each.end) for each in scenario.zones]
+    beyond = [f"{name} ({at:g} m)" for name, at in places if at > driven]
+    notes = []
+    if beyond:
+        told = f"beyond {driven:g} m of scenario {scenario.name} lie"
+        notes.append(f"{told} {', '.join(beyond[:3])}; make it longer to meet them")
+    if driven > own and scenario.road.stations:
+        told = f"after {own:g} m the road of scenario {scenario.name} goes on as it"
+        notes.append(f"{told} ends")
+    fast = speed_of(scenario.speed) if speed is None else speed
+    return Chosen(scenario, driven, fast, tuple(notes))
 
 
 def read_scenario(path: Path) -> Scenario:

@@ -36,6 +36,7 @@ from costeer.scenarios.definition import (
     Road,
     Scenario,
     When,
+    curvature_of,
     size_of,
     speed_of,
 )
@@ -134,7 +135,7 @@ def road_of(road: Road, length: float) -> RoadParameters:
 def alignment_of(road: Road) -> Alignment:
     """How a road runs; it begins with the curvature of its first station."""
     places = [station.at for station in road.stations]
-    bends = [1.0 / station.radius for station in road.stations]
+    bends = [curvature_of(station) for station in road.stations]
     if places and places[0] > 0.0:
         places, bends = [0.0, *places], [bends[0], *bends]
     return alignment(places, bends)
@@ -151,7 +152,7 @@ def curvatures(
     """
     if not stations:
         return np.zeros_like(places)
-    bends = [1.0 / each.radius for each in stations]
+    bends = [curvature_of(each) for each in stations]
     return np.interp(places, [each.at for each in stations], bends)
 
 

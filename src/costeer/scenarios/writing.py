@@ -85,7 +85,7 @@ _BEND = """\
 
 _REST = """
 # Slower cars that appear ahead one after the other, each to be overtaken.
-overtaking: {cars: 1, first: 200, spacing: 2000, ahead: 70}
+overtaking: {cars: 1, first: FIRST, spacing: 2000, ahead: 70}
 
 # Cars all about that follow (IDM) and change lanes (MOBIL).
 # stream: {cars: 12, speed: 75 km/h, reach: 300, trucks: 0.1}
@@ -121,7 +121,8 @@ def template(scenario: Scenario, notes: Sequence[str] = ()) -> str:
     """
     told = "".join(f"# {' '.join(each.split())}\n" for each in notes)
     first = "".join(_entry(k, getattr(scenario, k)) for k in ("name", "about", "speed"))
-    return f"{_HEAD}{told}\n{first}\n{_road(scenario.road)}{_REST}"
+    rest = _REST.replace("FIRST", f"{min(200, scenario.road.length // 4):g}")
+    return f"{_HEAD}{told}\n{first}\n{_road(scenario.road)}{rest}"
 
 
 def _road(road: Road) -> str:

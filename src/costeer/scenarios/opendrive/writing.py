@@ -15,7 +15,7 @@ from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
-from costeer.scenarios.definition import Road, Scenario
+from costeer.scenarios.definition import Road, Scenario, curvature_of
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(8)
 _LONGEST_STEP = 10.0
@@ -71,7 +71,7 @@ def _type(road: Road) -> Iterator[str]:
 def _stretches(road: Road) -> Iterator[_Stretch]:
     """Stretches between stations, and before the first and after the last."""
     places = [each.at for each in road.stations]
-    bends = [1.0 / each.radius for each in road.stations]
+    bends = [curvature_of(each) for each in road.stations]
     if not places:
         places, bends = [0.0], [0.0]
     places, bends = [0.0, *places, road.length], [bends[0], *bends, bends[-1]]
