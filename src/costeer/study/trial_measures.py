@@ -66,8 +66,8 @@ def prepare(
 def trial_measures(trial: Trial) -> Measures:
     """Every measure of a trial by its name in `trials.csv`, in that order."""
     return (
-        _lane_keeping(trial)
-        | _course(trial)
+        lane_keeping_measures(trial)
+        | course_measures(trial)
         | _lane_changes(trial)
         | _departures(trial)
         | _detection(trial)
@@ -80,7 +80,8 @@ def sampling_rate(time: Signal) -> float:
     return (time.size - 1) / float(time[-1] - time[0]) if time.size > 1 else nan
 
 
-def _lane_keeping(trial: Trial) -> Measures:
+def lane_keeping_measures(trial: Trial) -> Measures:
+    """SDLP, reversal rate, driver's torque and times to line crossing."""
     return {
         "sdlp": _position_deviation(trial),
         "swrr": _reversal_rate(trial),
@@ -130,7 +131,8 @@ def _line_crossing_times(trial: Trial) -> Measures:
     return dict(zip(names, times, strict=True))
 
 
-def _course(trial: Trial) -> Measures:
+def course_measures(trial: Trial) -> Measures:
+    """Duration, distance and mean speed."""
     return {
         "duration": _of_column(trial, "time", "s", _extent),
         "distance": _of_column(trial, "longitudinal_position", "m", _extent),
@@ -194,7 +196,7 @@ def _detection(trial: Trial) -> Measures:
     if isinstance(found, str):
         reason = found
         return {name: unknown(unit, reason) for name, unit in _DETECTION_UNITS.items()}
-    kilometres = _course(trial)["distance"]
+    kilometres = course_measures(trial)["distance"]
     false = triggers.count(found, triggers.FALSE)
     missed = triggers.num_missed(found)
     return {
