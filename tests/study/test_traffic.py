@@ -114,10 +114,8 @@ def test_the_mirrored_drive_has_the_same_measures() -> None:
     there = measured(mirrored(drive, 3), overtaking_side=1.0)
     assert here.measures["num_lane_changes"].value == 2
     for name, one in here.measures.items():
-        # The left lane's centre, which curvature is told of, is the right one there.
-        near = 1e-2 if "beyond_curve" in name else 1e-9
         other = there.measures[name].value
-        assert other == pytest.approx(one.value, rel=near, nan_ok=True), name
+        assert other == pytest.approx(one.value, rel=1e-9, nan_ok=True), name
     for row, other_row in zip(here.lane_changes, there.lane_changes, strict=True):
         assert other_row["direction"] == -row["direction"]  # type: ignore[operator]
         assert other_row["lead_gap"] == pytest.approx(row["lead_gap"], nan_ok=True)

@@ -64,12 +64,14 @@ def record(columns: Columns, **road: float) -> TrialRecord:
 
 def mirrored(columns: Mapping[str, NDArray[Any]], num_lanes: int) -> Columns:
     """The same drive with left and right swapped, on any number of lanes."""
-    across = {"yaw_angle", "steering_wheel_angle", "road_curvature"}
+    across, width = {"yaw_angle", "steering_wheel_angle"}, (num_lanes - 1) * LANE
     found = {}
     for name, values in columns.items():
         if name in across:
             values = -values
         if name == "lateral_position" or name.endswith("_lateral"):
-            values = -(num_lanes - 1) * LANE - values
+            values = -width - values
+        if name == "road_curvature":  # of the lane that is the left one then
+            values = -values / (1.0 + values * width)
         found[name] = values
     return found
