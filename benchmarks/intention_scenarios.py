@@ -9,7 +9,7 @@ Crossings to the other side cannot be announced; they are counted apart.
 from __future__ import annotations
 
 import argparse
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from concurrent.futures import ProcessPoolExecutor
 from itertools import product
 from typing import NamedTuple
@@ -96,12 +96,15 @@ def judged_trial(trial: Trial) -> Found:
     return judged(driven(trial))
 
 
-def total(parts: Iterable[Found]) -> Found:
+def total(parts: Sequence[Found]) -> Found:
     """The sum of several trials."""
-    whole = Found()
-    for part in parts:
-        whole = Found(*(a + b for a, b in zip(whole, part, strict=True)))
-    return whole
+    return Found(
+        facing=tuple(lead for each in parts for lead in each.facing),
+        away=tuple(lead for each in parts for lead in each.away),
+        num_false=sum(each.num_false for each in parts),
+        num_contacts=sum(each.num_contacts for each in parts),
+        kilometres=sum(each.kilometres for each in parts),
+    )
 
 
 HEAD = (
@@ -139,7 +142,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     with ProcessPoolExecutor(given.jobs) as pool:
         for scenario, condition in groups:
             trials = [(scenario, condition, number) for number in people]
-            found = total(pool.map(judged_trial, trials))
+            found = total(list(pool.map(judged_trial, trials)))
             print(row(scenario, condition, found), flush=True)
 
 
