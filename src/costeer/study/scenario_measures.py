@@ -32,6 +32,7 @@ from costeer.study.trial_measures import (
     course_measures,
     lane_keeping_measures,
     prepare,
+    torque_rms,
 )
 
 WHOLE_COURSE = "whole course"
@@ -46,7 +47,7 @@ class ScenarioRow(NamedTuple):
         lane_change: Number of the lane change in the trial; None if the value is of
             the whole zone.
         measure: Its name.
-        value: In SI units; NaN if it is not defined.
+        value: In SI units; empty if it is not defined.
         unit: "-" if it has none.
     """
 
@@ -127,7 +128,7 @@ def zone_measures(trial: Trial, around: Surroundings, zone: Zone) -> Measures:
         return {name: unknown(each.unit, why) for name, each in found.items()}
     return {
         **lane_keeping_measures(kept),
-        "driver_torque_rms": lane_keeping_measures(part)["driver_torque_rms"],
+        "driver_torque_rms": torque_rms(part),
         **course_measures(part),
         "steering_velocity_rms": _steering_velocity(columns),
         "num_lane_changes": _changes_inside(trial, inside),

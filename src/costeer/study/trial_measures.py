@@ -85,7 +85,7 @@ def lane_keeping_measures(trial: Trial) -> Measures:
     return {
         "sdlp": _position_deviation(trial),
         "swrr": _reversal_rate(trial),
-        "driver_torque_rms": _torque(trial),
+        "driver_torque_rms": torque_rms(trial),
     } | _line_crossing_times(trial)
 
 
@@ -117,7 +117,8 @@ def _reversal_rate(trial: Trial) -> Measure:
     )
 
 
-def _torque(trial: Trial) -> Measure:
+def torque_rms(trial: Trial) -> Measure:
+    """Root mean square of the driver's torque over every sample [N·m]."""
     return _of_column(trial, "driver_torque", "N·m", rms, gaps=True)
 
 

@@ -41,11 +41,13 @@ def draw(material: StudyMaterial) -> list[Exhibit]:
         lacking = "No car was near in any trial of this study."
         return [not_drawn(NAME, TITLE, lacking)]
     figure = new_figure(FULL_WIDTH_MM, 62.0)
-    margins = Margins(left=13.0, top=12.0, bottom=11.0, between_columns=9.0)
+    margins = Margins(left=13.0, right=3.0, top=12.0, bottom=11.0, between_columns=13.0)
     grid = panels(figure, 1, len(_PANELS), margins)[0]
     for axes, letter, name in zip(grid, "abcd", _PANELS, strict=True):
         _cumulative(axes, found[name], name)
         panel_letter(axes, letter)
+    for axes in grid[1::2]:  # shares of the same as the panel to their left
+        axes.set_ylabel("")
     handles = _legend(found)
     figure.legend(handles=handles, ncols=len(handles), loc="upper right")
     return [Exhibit(NAME, TITLE, _caption(found), _DESCRIPTION, figure)]
