@@ -20,14 +20,20 @@ from costeer.loop.scenario import TrialSetup
 from costeer.loop.trial import simulate_trial
 from costeer.records.columns import TrialRecord
 from costeer.scenarios.reading import scenario_named, speed_of
-from costeer.study.detection import FALSE, Detection, count, detect, lead_time
+from costeer.study.crossings import Crossing, within
+from costeer.study.detection import FALSE, Detection, detect, lead_time
 from costeer.study.lanes import adjacent_side
 from costeer.study.measures import prepared
+from costeer.study.segments import LaneChange
+from costeer.study.trial_measures import Trial as MeasuredTrial
 
 SCENARIOS = ("expressway", "dense-traffic", "three-lanes")
 CONDITIONS = ("manual", "strong-normal")
 SEED = 5
 """Of drivers that were neither trained on nor judged elsewhere."""
+
+AFTER = 4.0
+"""So long after a crossing a false trigger is counted to it [s]."""
 
 Trial = tuple[str, str, int]
 """Scenario, condition and number of the driver."""
@@ -40,15 +46,21 @@ class Found(NamedTuple):
         facing: Lead time of each intended crossing to the side that the network looks
             to [s]; 0 if missed.
         away: The same of those to the other side [s].
+        facing_torque: Peak driver torque in each lane change to the first side [N·m].
+        away_torque: The same to the other side [N·m].
         num_false: False triggers.
-        num_contacts: Trials that ended in a collision.
+        num_after: Of them within 4 s after a crossing to the other side.
+        num_collisions: Trials that ended in one.
         kilometres: Driven [km].
     """
 
     facing: tuple[float, ...] = ()
     away: tuple[float, ...] = ()
+    facing_torque: tuple[float, ...] = ()
+    away_torque: tuple[float, ...] = ()
     num_false: int = 0
-    num_contacts: int = 0
+    num_after: int = 0
+    num_collisions: int = 0
     kilometres: float = 0.0
 
 
@@ -66,6 +78,23 @@ def driven(trial: Trial) -> TrialRecord:
     )
 
 
+def is_faced(trial: MeasuredTrial, crossed: Crossing | LaneChange) -> bool:
+    """Whether the network looks to the side of a crossing before it."""
+    before = crossed.lane - crossed.direction
+    return adjacent_side(trial.parameters, before) == crossed.direction
+
+
+def peak_torques(trial: MeasuredTrial) -> dict[bool, list[float]]:
+    """Peak driver torque of lane changes [N·m], by whether their side is faced."""
+    found: dict[bool, list[float]] = {True: [], False: []}
+    time, torque = trial.columns["time"], np.abs(trial.columns["driver_torque"])
+    changes = () if isinstance(trial.segments, str) else trial.segments.changes
+    for change in changes:
+        rows = within(time, change.start_time, change.end_time)
+        found[is_faced(trial, change)].append(float(torque[rows].max()))
+    return found
+
+
 def judged(record: TrialRecord) -> Found:
     """What the triggers of a record were worth.
 
@@ -77,16 +106,22 @@ def judged(record: TrialRecord) -> Found:
     if not isinstance(found, Detection):
         raise ValueError(found)
     leads: dict[bool, list[float]] = {True: [], False: []}
+    unseen = []
     for crossing in found.crossings:
-        before = crossing.lane - crossing.direction
-        facing = adjacent_side(trial.parameters, before) == crossing.direction
+        facing = is_faced(trial, crossing)
         leads[facing].append(lead_time(found, crossing.time))
+        unseen += [] if facing else [crossing.time]
+    torques = peak_torques(trial)
+    false = [each.time for each in found.triggers if each.verdict == FALSE]
     position = record.columns["longitudinal_position"]
     return Found(
         facing=tuple(leads[True]),
         away=tuple(leads[False]),
-        num_false=count(found, FALSE),
-        num_contacts=int((record.columns["contact"] >= 2).any()),
+        facing_torque=tuple(torques[True]),
+        away_torque=tuple(torques[False]),
+        num_false=len(false),
+        num_after=sum(any(0.0 < t - c < AFTER for c in unseen) for t in false),
+        num_collisions=int((record.columns["contact"] >= 2).any()),
         kilometres=float(position[-1] - position[0]) / 1000.0,
     )
 
@@ -101,31 +136,42 @@ def total(parts: Sequence[Found]) -> Found:
     return Found(
         facing=tuple(lead for each in parts for lead in each.facing),
         away=tuple(lead for each in parts for lead in each.away),
+        facing_torque=tuple(peak for each in parts for peak in each.facing_torque),
+        away_torque=tuple(peak for each in parts for peak in each.away_torque),
         num_false=sum(each.num_false for each in parts),
-        num_contacts=sum(each.num_contacts for each in parts),
+        num_after=sum(each.num_after for each in parts),
+        num_collisions=sum(each.num_collisions for each in parts),
         kilometres=sum(each.kilometres for each in parts),
     )
 
 
 HEAD = (
-    "| scenario | condition | crossings | missed | of them to the side looked to | "
-    "lead, median | false per km | collisions |\n|---|---|---|---|---|---|---|---|"
+    "| scenario | condition | crossings | missed | of those to the side looked to | "
+    "lead | false per km | of them after an unseen change | peak torque, seen side | "
+    "unseen side | collisions |\n|---|---|---|---|---|---|---|---|---|---|---|"
 )
 
 
+def _median(values: Sequence[float], unit: str) -> str:
+    return f"{np.median(values):.2f} {unit}" if len(values) else "–"
+
+
 def row(scenario: str, condition: str, found: Found) -> str:
-    """A row of the table; the lead is of crossings to the side looked to."""
+    """A row of the table; leads are of announced crossings, values are medians."""
     facing, every = np.array(found.facing), np.array([*found.facing, *found.away])
-    missed, seen = int((every == 0.0).sum()), facing[facing > 0.0]
+    missed, seen = int((every == 0.0).sum()), [x for x in found.facing if x > 0.0]
     cells = (
         scenario,
         condition,
         f"{every.size}",
         f"{missed} ({missed / every.size:.0%})",
         f"{int((facing == 0.0).sum())} of {facing.size}",
-        f"{np.median(seen):.2f} s" if seen.size else "–",
-        f"{found.num_false / found.kilometres:.3f}",
-        f"{found.num_contacts}",
+        _median(seen, "s"),
+        f"{found.num_false / found.kilometres:.3f} ({found.num_false})",
+        f"{found.num_after}",
+        _median(found.facing_torque, "N·m"),
+        _median(found.away_torque, "N·m"),
+        f"{found.num_collisions}",
     )
     return f"| {' | '.join(cells)} |"
 
