@@ -53,7 +53,7 @@ def test_everything_the_paper_shows_is_drawn_but_workload(
     exhibits: list[Exhibit],
 ) -> None:
     of_people = {bars.file_name(each) for each in WORKLOAD}
-    of_people |= {"workload-items", "agreement"}
+    of_people |= {"workload-items", "agreement", "traffic"}
     assert {each.name for each in drawn(exhibits)} == set(FIGURE_NAMES) - of_people
 
 

@@ -71,7 +71,7 @@ def summary(page: str) -> dict[str, str]:
 def test_a_report_comes_with_tables_and_figures(reported: Path) -> None:
     names = contents(reported).keys()
     of_people = {each.name.replace("_", "-") for each in WORKLOAD}
-    of_people |= {"workload-items", "agreement"}
+    of_people |= {"workload-items", "agreement", "traffic"}
     figures = {f"figures/{name}.svg" for name in set(FIGURE_NAMES) - of_people}
     assert figures | {*TABLES, "report.html"} <= names
 
