@@ -45,7 +45,7 @@ export class View {
     const workshop = new Workshop(options.low, this.renderer.capabilities.getMaxAnisotropy());
     // Under left-hand traffic the driver sits on the right.
     const inner = hello.road.overtaking_side > 0 ? -1 : 1;
-    this.world = new World(workshop, hello.road, OWN_COLOUR);
+    this.world = new World(workshop, hello, OWN_COLOUR);
     this.cockpit = new Cockpit(workshop, inner, OWN_COLOUR);
     this.mirrors = new Mirrors(workshop, options.mirrors, inner);
     this.setUpCockpit(workshop);
@@ -121,18 +121,7 @@ export class View {
    */
   update(columns, state) {
     const value = (name) => columns.finite(state, name);
-    const time = value("time");
-    this.world.update({
-      position: value("longitudinal_position"),
-      lateral: value("lateral_position"),
-      yaw: value("yaw_angle"),
-      leader: {
-        distance: columns.value(state, "lead_distance"),
-        lane: columns.value(state, "lead_lane"),
-        velocity: value("lead_velocity"),
-        time,
-      },
-    });
+    this.world.update((name) => columns.value(state, name));
     this.cockpit.update({
       angle: value("steering_wheel_angle"),
       speed: value("longitudinal_velocity"),
