@@ -35,7 +35,7 @@ def drive(
         other = NO_LEADER if leader_speed is None else leader(ahead, leader_speed)
         car = driving(position, speed=speed)
         state = longitudinal.step(
-            PARAMETERS, state, car, other, in_phase(phase), 0.0, DT
+            PARAMETERS, state, car, (other, NO_LEADER), in_phase(phase), 0.0, DT
         )
         speed += state.wanted_acceleration * DT
         position += speed * DT

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from costeer.sessions.plan import parsed_plan
+from costeer.sessions.plan_file import parsed_plan
 from costeer.sessions.power import (
     PowerSettings,
     effect_size,

@@ -12,15 +12,17 @@ import pytest
 
 from costeer.cli import main
 from costeer.records.columns import COLUMNS
+from costeer.sessions.answered import answers_in
+from costeer.sessions.attempts import Attempts
 from costeer.sessions.log import clock_jumps
 from costeer.sessions.questionnaires.definition import own_folder
 from costeer.sessions.session import Session
-from costeer.sessions.tables import write_all
+from costeer.sessions.tables import people_in, write_all
 from costeer.sessions.withdrawal import withdraw
 from costeer.study.measures import trial_row
 from costeer.study.quantities import WORKLOAD_ITEMS
 from tests.sessions.conftest import DRIVEN
-from tests.sessions.made_up import do, made_up_session, workload
+from tests.sessions.made_up import made_up_session, workload
 from tests.study.synthetic import synthetic_record
 
 Rows = list[dict[str, str]]
@@ -244,15 +246,34 @@ def test_a_session_without_a_trial_is_refused_in_a_line(
     assert "has no trial that counts; drive one to its end" in error
 
 
-def test_two_trials_of_one_condition_are_refused(tmp_path: Path) -> None:
-    folder = tmp_path / "s"
-    made_up_session(folder, [], ["manual", "weak-gentle"]).close()
-    plan = (folder / "plan.yaml").read_text()
-    (folder / "plan.yaml").write_text(f"{plan}  - {{kind: drive, condition: manual}}\n")
+def test_the_log_keeps_its_order_when_the_clock_is_set_back(
+    studied: Path, tmp_path: Path
+) -> None:
+    folder = tmp_path / "study"
+    shutil.copytree(studied, folder)
     session = Session(folder)
-    session.begin("P01")
-    while (step := session.standing("P01").step).kind != "done":
-        do(session, "P01", step)
+    with session.store.transaction():  # by a day, in the middle
+        session.store.run(
+            "UPDATE events SET utc = '2020' || substr(utc, 5) WHERE number > 60"
+        )
+    told = session.store.rows("SELECT kind, text FROM events ORDER BY number")
     session.close()
-    with pytest.raises(ValueError, match=r"P01-drive-manual\.parquet and .*-2\.parq"):
-        write_all(folder, tmp_path / "out")
+    write_all(folder, tmp_path / "out")
+    found = rows(tmp_path / "out", "events.csv")
+    kinds = [row["kind"] for row in found if not row["record"]]
+    assert kinds.count("clock jump") == 1
+    kinds.remove("clock jump")
+    assert kinds == [row["kind"] for row in told]
+
+
+def test_of_two_whole_attempts_the_later_counts(studied: Path, tmp_path: Path) -> None:
+    folder = tmp_path / "study"
+    shutil.copytree(studied, folder)
+    session = Session(folder)
+    Attempts(session).exclude("P03", "drive-manual", 1, "it was well", out=False)
+    with session.store.transaction():  # the computer was started anew in between
+        session.store.run("UPDATE attempts SET monotonic = 1 WHERE attempt = 3")
+    people = people_in(session, answers_in(session))
+    (one,) = [d for d in people.drives if d[:2] == ("P03", "manual")]
+    session.close()
+    assert one.record.name == "P03-drive-manual-3.parquet"

@@ -25,7 +25,7 @@ ACTIONS = ("new", "run", "status", "export", "withdraw", "power", "rehearse")
 
 
 def session(
-    action: Annotated[str, typer.Argument(help=", ".join(ACTIONS) + ".")],
+    action: Annotated[str, typer.Argument(help="One of " + ", ".join(ACTIONS) + ".")],
     folder: Annotated[Path, typer.Argument(help="Folder of the study.")],
     plan: Annotated[
         Path | None,
@@ -35,23 +35,27 @@ def session(
         str | None, typer.Option(help="With withdraw: whose data are deleted.")
     ] = None,
     wheel: Annotated[
-        str, typer.Option(help="With run: as `costeer drive --wheel`.")
+        str,
+        typer.Option(help="With run: a steering wheel, as in `costeer drive --help`."),
     ] = "auto",
     head: Annotated[
-        str, typer.Option(help="With run: as `costeer drive --head`.")
+        str,
+        typer.Option(help="With run: a head tracker, as in `costeer drive --help`."),
     ] = "none",
     port: Annotated[
-        int, typer.Option(help="With run: of the pages; 0 takes any free.")
+        int, typer.Option(help="With run: port of the pages; 0 takes any that is free.")
     ] = 8700,
     host: Annotated[
         str,
         typer.Option(
-            help="With run: to listen on; others than this computer need a token."
+            help="With run: address to serve pages on; other computers need a token."
         ),
     ] = "127.0.0.1",
     browser: Annotated[
         bool,
-        typer.Option("--browser/--no-browser", help="With run: open the console."),
+        typer.Option(
+            "--browser/--no-browser", help="With run: open the console in a browser."
+        ),
     ] = True,
     to: Annotated[
         str, typer.Option("--format", help="With export: csv, bids, matlab, mcap, all.")
@@ -62,8 +66,8 @@ def session(
     haste: Annotated[
         float | None,
         typer.Option(
-            help="With rehearse, or run --wheel simulated:virtual: seconds of a drive "
-            "in a second."
+            help="With rehearse, or run --wheel simulated:virtual: how many times as "
+            "fast as the clock drives go."
         ),
     ] = None,
     participants: Annotated[
@@ -71,34 +75,45 @@ def session(
     ] = 12,
     accidents: Annotated[
         float,
-        typer.Option(help="With rehearse: how often a minute something is killed."),
+        typer.Option(
+            help="With rehearse: how many times a minute something is killed."
+        ),
     ] = 0.5,
     conditions: Annotated[
-        str, typer.Option(help="With rehearse: of the assisted trials, by commas.")
+        str, typer.Option(help="With rehearse: of the assisted trials, comma between.")
     ] = "",
     length: Annotated[
-        float, typer.Option(help="With rehearse: of a trial [m].")
+        float, typer.Option(help="With rehearse: length of a trial [m].")
     ] = 300.0,
     seed: Annotated[
-        int, typer.Option(help="With rehearse and power: of all that is random.")
+        int, typer.Option(help="With rehearse and power: seed of all that is random.")
     ] = 1,
     drivers: Annotated[
         int, typer.Option(help="With power: virtual drivers that drive the plan.")
     ] = 40,
     intention: Annotated[
-        str, typer.Option(help="With power: network or scripted.")
+        str,
+        typer.Option(help="With power: who reads a lane change, network or scripted."),
     ] = "network",
 ) -> None:
     """Run a study with people: plan, questionnaires, drives, data.
 
-    `new` writes the plan of the paper's experiment into a folder; edit it. `run` shows
-    two addresses, of the participant's page and of the console.
+    `new` writes the plan of the paper's experiment into a folder; edit it, as
+    docs/session.md says. `power` predicts how many participants it takes. `run` serves
+    the participant's page and the experimenter's console and prints their addresses.
+    `status` says where everybody stands, `export` writes the data for other programs,
+    `withdraw` deletes all of a participant. `rehearse` has simulated participants go
+    through the paper's plan in a folder of its own. `costeer report` evaluates.
 
     Example:
         costeer session new my-study
+        costeer session power my-study
         costeer session run my-study
         costeer session status my-study
         costeer session export my-study --format bids --out shared
+        costeer session withdraw my-study --participant P01
+        costeer session rehearse my-rehearsal --participants 2
+        costeer report my-study
     """
     rehearsal = Rehearsal(participants, seed, accidents, haste, conditions, length)
     lab = _Lab(wheel, head, 1.0 if haste is None else haste)
@@ -125,22 +140,19 @@ def _new(folder: Path, plan: Path | None) -> None:
         OSError: If it cannot be written.
     """
     from costeer.base.files import read_whole, write_text
-    from costeer.sessions.plan import (
-        PLAN_FILE,
-        balance,
-        paper_plan_text,
-        parsed_plan,
-    )
+    from costeer.sessions.plan import PLAN_FILE, balance
+    from costeer.sessions.plan_file import check_words, paper_plan_text, parsed_plan
 
-    text = paper_plan_text() if plan is None else read_whole(plan).decode("utf-8")
+    text = paper_plan_text().encode() if plan is None else read_whole(plan)
     found = parsed_plan(text, str(plan or PLAN_FILE))
+    check_words(found, folder)
     target = folder / PLAN_FILE
     if target.exists():
         raise ValueError(
             f"{folder} has a {PLAN_FILE} already; edit that, or give another folder"
         )
     folder.mkdir(parents=True, exist_ok=True)
-    write_text(target, text)
+    write_text(target, text.decode("utf-8"))
     even = balance(found, range(1, found.participants + 1)).is_even
     told = "balanced" if even else "not balanced over so many"
     typer.echo(target)
@@ -160,6 +172,7 @@ class _Lab(NamedTuple):
 
 def _run(folder: Path, lab: _Lab, where: tuple[str, int], browser: bool) -> None:
     """Serve both pages until Ctrl-C."""
+    from costeer.sessions.plan_file import check_words
     from costeer.sessions.session import Session
     from costeer.study.folder import locked
     from costeer.web.security import access_for
@@ -173,6 +186,7 @@ def _run(folder: Path, lab: _Lab, where: tuple[str, int], browser: bool) -> None
         if hasattr(signal, name):
             signal.signal(getattr(signal, name), _stop)
     session = Session(folder)
+    check_words(session.plan, folder)
     _compile(session.plan, devices)
     with locked(folder):  # a second one would take running drives for aborted
         desk = Desk(session, devices)
@@ -267,9 +281,14 @@ def _status(folder: Path) -> None:
                 row["reason"],
             ]
         )
-    print_table(["participant", "row", "status", "at", "steps done", "reason"], rows)
+    heads = ["participant", "row of orders", "status", "at", "steps done", "reason"]
+    if rows:
+        print_table(heads, rows)
     gone = num_withdrawn(session)
     session.close()
+    if not rows:
+        note("costeer: no participants; they begin on the console of:")
+        note(f"costeer session run {folder}")
     if gone:
         note(f"costeer: {gone} withdrew; nothing of them is left")
 
@@ -288,8 +307,8 @@ def _export(folder: Path, to: str, out: Path | None) -> None:
     people = export_session(folder, to, out)
     typer.echo(out)
     note(
-        f"costeer: {len(people.drives)} trials; {len(people.exclusions)} are excluded "
-        "or missing, --format csv says why"
+        f"costeer: {len(people.drives)} trials; excluded or missing: "
+        f"{len(people.exclusions)}, exclusions.csv of --format csv says why"
     )
 
 

@@ -36,7 +36,8 @@ def power(
     """
     from costeer.base.files import write_text
     from costeer.cli.console import progress
-    from costeer.sessions.plan import PLAN_FILE, read_plan, session_steps
+    from costeer.sessions.plan import PLAN_FILE, session_steps
+    from costeer.sessions.plan_file import read_plan
     from costeer.sessions.power import PowerSettings, planned_power
 
     found = read_plan(plan or folder / PLAN_FILE)

@@ -71,10 +71,10 @@ class DecisionParameters(NamedTuple):
         gap_ahead: Least time gap to the car ahead in the other lane that is accepted
             [s]. Source: assumed, in the range of critical gaps of Toledo et al. (2003).
         gap_behind: Least time gap of the car behind there [s]. Source: as above.
-        closing_time: Least time until that car would be there [s]. Source: assumed,
+        closing_time: Least time until either car would be met [s]. Source: assumed,
             people accept 5 s and more.
-        return_room: A lane is worth returning to when the next car there is so many
-            time gaps `headway` away, or not slower than wanted [-]. Source: assumed.
+        return_room: A lane is worth changing to when the next car there is so many
+            time gaps `headway` away, or fast enough [-]. Source: assumed.
     """
 
     decides: Real = 1.0
@@ -194,12 +194,26 @@ def accepts(
 ) -> Flag:
     """Whether the gap in a lane beside is large enough, to the front and behind."""
     speed = measurement.longitudinal_velocity
-    closing = xp.maximum(lane.behind.velocity - speed, 0.0)
-    ahead = lane.ahead.gap > parameters.gap_ahead * speed
-    behind = (lane.behind.gap > parameters.gap_behind * lane.behind.velocity) & (
-        lane.behind.gap > parameters.closing_time * closing
+    catching_up = xp.maximum(speed - lane.ahead.velocity, 0.0)
+    ahead = lane.ahead.gap > xp.maximum(
+        parameters.gap_ahead * speed, parameters.closing_time * catching_up
+    )
+    caught_up = xp.maximum(lane.behind.velocity - speed, 0.0)
+    behind = lane.behind.gap > xp.maximum(
+        parameters.gap_behind * lane.behind.velocity,
+        parameters.closing_time * caught_up,
     )
     return ahead & behind
+
+
+@compiled
+def is_worth_overtaking(parameters: DecisionParameters, around: Surroundings) -> Flag:
+    """Whether the lane to overtake in is free for a while, or faster."""
+    next_car = around.outer.ahead
+    speed = around.measurement.longitudinal_velocity
+    far = next_car.gap > parameters.return_room * parameters.headway * speed
+    faster = next_car.velocity - around.leader.longitudinal_velocity
+    return far | (faster > parameters.worthwhile_difference)
 
 
 @compiled
@@ -287,9 +301,9 @@ def next_phase(
     settled = time >= state.change_duration + parameters.settling_time
     way_out = accepts(parameters, around.outer, around.measurement)
     way_back = accepts(parameters, around.home, around.measurement)
-    overtake = (
-        wants_to_overtake(parameters, state.impatience, around) | (around.asked > 0.5)
-    ) & way_out
+    overtake = wants_to_overtake(parameters, state.impatience, around)
+    overtake = overtake & is_worth_overtaking(parameters, around)
+    overtake = (overtake | (around.asked > 0.5)) & way_out
     back = wants_to_return(parameters, around.measurement, around.leader)
     back = (back & is_worth_returning(parameters, around)) | (around.asked < -0.5)
     rested = time >= state.pause
@@ -398,6 +412,18 @@ def direction(state: DecisionState, overtaking_side: Real) -> Real:
     back = (state.phase == PREPARING_RETURN) | (state.phase == RETURNING)
     inward = xp.select(back, -overtaking_side, 0.0)
     return xp.select(out, overtaking_side, inward)
+
+
+@compiled
+def steered_to(state: DecisionState, direction: Real) -> Real:
+    """Side that the driver steers to, -1 right, 0 none yet, +1 left [-].
+
+    Args:
+        state: Of the decision.
+        direction: Side that the driver means to change to [-].
+    """
+    steers = (state.phase == CHANGING) | (state.phase == RETURNING)
+    return xp.select(steers, direction, 0.0)
 
 
 @compiled

@@ -30,6 +30,7 @@ from costeer.drivers.interface import (
     Knowledge,
     Perception,
     Plan,
+    as_leader,
 )
 from costeer.drivers.longitudinal import LongitudinalParameters, LongitudinalState
 from costeer.drivers.reliance import RelianceParameters, RelianceState
@@ -37,6 +38,7 @@ from costeer.drivers.tracking import TrackingParameters, TrackingState
 from costeer.drivers.vision import VisionNoise, VisionParameters, VisionState
 from costeer.plant.parameters import holding_stiffness
 from costeer.plant.road import cruising_lane
+from costeer.plant.traffic import LeaderState
 from costeer.sensing.measurement import Measurement
 
 SLOWEST_SEEN = 5.0
@@ -230,6 +232,21 @@ def see(
 
 
 @compiled
+def leader_in(perception: Perception, direction: Real) -> LeaderState:
+    """The next car in the lane that the driver changes to; none without a change.
+
+    Args:
+        perception: With the cars around.
+        direction: Of the lane change, -1 right, 0 none, +1 left [-].
+    """
+    around = perception.around
+    lane = xp.select(direction > 0.0, around.left, around.right)
+    leader = as_leader(lane.ahead, perception.measurement)
+    changes = direction != 0.0
+    return leader._replace(present=leader.present & changes)
+
+
+@compiled
 def feel(
     parameters: DriverParameters,
     state: DriverState,
@@ -304,11 +321,12 @@ def act(
     aimed = swerve(parameters, knowledge, measurement, aimed, evading)
     eyes, intended = see(parameters, state, knowledge, measurement, aimed, noise, dt)
     hands, command = feel(parameters, state, knowledge, perception, intended, dt)
+    steered = decision.steered_to(decided, direction)
     foot = longitudinal.step(
         parameters.longitudinal,
         state.longitudinal,
         measurement,
-        perception.leader,
+        (perception.leader, leader_in(perception, steered)),
         decided,
         noise.speed,
         dt,

@@ -11,14 +11,15 @@ import math
 from collections.abc import Callable
 from typing import Any, Generic, NamedTuple, TypeVar
 
-from costeer.base.array import Flag, Real
+from costeer.base.array import Flag, Real, compiled
 from costeer.base.sources import source_hash
 from costeer.drivers.arm import ArmCommand
 from costeer.drivers.longitudinal import Pedals
 from costeer.plant.alignment import STRAIGHT, Alignment
-from costeer.plant.fleet import Neighbours
+from costeer.plant.fleet import CarKind, Neighbours
+from costeer.plant.following import LONGEST_GAP, Ahead
 from costeer.plant.parameters import CarParameters, ColumnParameters, RoadParameters
-from costeer.plant.traffic import LeaderState
+from costeer.plant.traffic import LeaderState, no_leader
 from costeer.sensing.measurement import Measurement
 
 P = TypeVar("P")
@@ -55,6 +56,27 @@ class Perception(NamedTuple):
     leader: LeaderState
     guidance_torque: Real
     around: Neighbours = Neighbours()
+
+
+LENGTH = CarKind().length
+"""Of a usual car [m]: drivers follow by the distance of the cars' middles."""
+
+
+@compiled
+def as_leader(ahead: Ahead, measurement: Measurement) -> LeaderState:
+    """The next car in the way, as a driver takes it for a leader.
+
+    Args:
+        ahead: Of the driven car.
+        measurement: Of the driven car.
+    """
+    seen = ahead.gap < LONGEST_GAP
+    return no_leader()._replace(
+        present=seen,
+        longitudinal_position=measurement.longitudinal_position + ahead.gap + LENGTH,
+        longitudinal_velocity=ahead.velocity,
+        lane=measurement.lane,
+    )
 
 
 class DriverNoise(NamedTuple):

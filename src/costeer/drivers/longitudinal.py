@@ -130,7 +130,7 @@ def step(
     parameters: LongitudinalParameters,
     state: LongitudinalState,
     measurement: Measurement,
-    leader: LeaderState,
+    leaders: tuple[LeaderState, LeaderState],
     decision: DecisionState,
     normal: Real,
     dt: Real,
@@ -141,7 +141,7 @@ def step(
         parameters: Of this driver.
         state: Of the foot.
         measurement: Of the own car.
-        leader: The car ahead.
+        leaders: The car ahead, and the next one in the lane that is steered to.
         decision: What the driver is up to.
         normal: Standard normal draw, wander of the preferred speed.
         dt: Control step [s].
@@ -149,7 +149,9 @@ def step(
     aim = wanted_speed(parameters, state, decision.phase)
     ratio = measurement.longitudinal_velocity / xp.maximum(aim, 1.0)
     free = 1.0 - ratio * ratio * ratio * ratio
-    following = 1.0 - interaction(parameters, measurement, leader, decision.phase)
+    own_lane = interaction(parameters, measurement, leaders[0], decision.phase)
+    beside = interaction(parameters, measurement, leaders[1], decision.phase)
+    following = 1.0 - xp.maximum(own_lane, beside)
     wanted = parameters.acceleration * xp.minimum(free, following)
     wanted = xp.maximum(wanted, -3.0 * parameters.deceleration)
     return LongitudinalState(

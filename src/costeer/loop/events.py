@@ -10,7 +10,6 @@ from costeer.base.array import Flag, Real, compiled
 from costeer.plant.alignment import Bend
 from costeer.plant.fleet import (
     Car,
-    CarKind,
     Fleet,
     FleetParameters,
     Spot,
@@ -18,7 +17,6 @@ from costeer.plant.fleet import (
     outlook,
     with_ego,
 )
-from costeer.plant.following import LONGEST_GAP, Ahead
 from costeer.plant.parameters import CarParameters, RoadParameters
 from costeer.plant.place import (
     BARRIER,
@@ -40,9 +38,6 @@ from costeer.plant.traffic import (
     no_leader,
 )
 from costeer.sensing.measurement import Measurement
-
-LENGTH = CarKind().length
-"""Of a usual car [m]: drivers follow by the distance of the cars' middles."""
 
 
 class EventState(NamedTuple):
@@ -243,23 +238,6 @@ def place_of(
         side_force=side_force(stretch, lasts, position),
         rumble=xp.select(state.contact == STRIP, torque, 0.0),
         stopped=state.contact >= BARRIER,
-    )
-
-
-@compiled
-def as_leader(ahead: Ahead, measurement: Measurement) -> LeaderState:
-    """The next car in the way, as a driver takes it for a leader.
-
-    Args:
-        ahead: Of the driven car.
-        measurement: Of the driven car.
-    """
-    seen = ahead.gap < LONGEST_GAP
-    return no_leader()._replace(
-        present=seen,
-        longitudinal_position=measurement.longitudinal_position + ahead.gap + LENGTH,
-        longitudinal_velocity=ahead.velocity,
-        lane=measurement.lane,
     )
 
 

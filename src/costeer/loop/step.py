@@ -22,8 +22,9 @@ from costeer.drivers.interface import (
     Knowledge,
     Perception,
     Plan,
+    as_leader,
 )
-from costeer.loop.events import as_leader, place_of, with_car
+from costeer.loop.events import place_of, with_car
 from costeer.loop.half_step import (
     ControlState,
     Sample,

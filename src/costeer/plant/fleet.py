@@ -226,12 +226,14 @@ class Spot(NamedTuple):
         position: Of its middle [m].
         lateral: Of the line along which it looks [m].
         half_width: Cars that reach into a band so wide beside it are in the way [m].
+        lane: Cars on their way to it are in the way too; NaN: none [-].
     """
 
     place: int
     position: Real
     lateral: Real
     half_width: Real
+    lane: Real = math.nan
 
 
 def outlook(parameters: FleetParameters, fleet: Fleet, spot: Spot) -> LaneOutlook:
@@ -252,6 +254,7 @@ def outlook(parameters: FleetParameters, fleet: Fleet, spot: Spot) -> LaneOutloo
     beside = numpy.abs(cars["lateral"] - spot.lateral)
     others = numpy.arange(SLOTS) != spot.place
     near = beside < spot.half_width + kinds["width"] / 2.0
+    near = near | (cars["lane"] == spot.lane)
     seen = (cars["present"] > 0.5) & near & others
     distance = cars["position"] - spot.position
     half = (kinds["length"] + kinds["length"][spot.place]) / 2.0
@@ -291,7 +294,8 @@ def _outlook(parameters: Any, fleet: Any, spot: Any) -> Any:
             kind = _read_kind(parameters.kinds, other)
             if other == spot.place or car.present < 0.5:
                 continue
-            if abs(car.lateral - spot.lateral) >= spot.half_width + kind.width / 2.0:
+            reach = spot.half_width + kind.width / 2.0
+            if abs(car.lateral - spot.lateral) >= reach and car.lane != spot.lane:
                 continue
             distance = car.position - spot.position
             gap = abs(distance) - (kind.length + own) / 2.0
@@ -329,6 +333,7 @@ def lane_outlook(
         position=car.position,
         lateral=lane_centre(road, lane),
         half_width=kind.width / 2.0 + MARGIN,
+        lane=lane,
     )
     return outlook(parameters, fleet, spot)
 

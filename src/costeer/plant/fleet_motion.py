@@ -39,6 +39,10 @@ from costeer.plant.following import (
 from costeer.plant.parameters import RoadParameters
 from costeer.plant.road import cruising_lane, lane_centre
 
+_LANE_REACH = 1.5
+"""Beside the centre of a lane, within which a car is in the way of one that comes in
+again [m]. Source: assumed."""
+
 _read_kind, _read_car, _write_car = KINDS.read, CARS.read, CARS.write
 
 
@@ -139,6 +143,17 @@ def obeying(
 
 
 @compiled
+def has_turn(parameters: FleetParameters, world: World, index: int) -> Flag:
+    """Whether a car may take a new place at this step: one at a time.
+
+    So no two take the same gap.
+    """
+    step = xp.floor(world.time / world.dt + 0.5)
+    rounds = xp.floor(step / parameters.num_places)
+    return step - rounds * parameters.num_places == index
+
+
+@compiled
 def by_mobil(
     parameters: FleetParameters, fleet: Fleet, world: World, car: Car, index: int
 ) -> Car:
@@ -148,7 +163,7 @@ def by_mobil(
     kind: CarKind = _read_kind(parameters.kinds, index)
     length, home = kind.length, cruising_lane(road)
     rested = car.changing >= law.change_duration + law.pause
-    willing = (kind.changes > 0.5) & rested
+    willing = (kind.changes > 0.5) & rested & has_turn(parameters, world, index)
     best, target = 0.0, car.lane
     for side in (-1.0, 1.0):
         lane = car.lane + side
@@ -198,7 +213,15 @@ def smooth(share: Real) -> Real:
 
 
 @compiled
-def driven_on(kind: CarKind, reach: Real, world: World, car: Car, ego: Car) -> Car:
+def other_end(reach: Real, car: Car, ego: Car) -> Real:
+    """Where a car that has fallen out of the stream comes in again [m]."""
+    return ego.position + xp.select(car.position < ego.position, reach, -reach)
+
+
+@compiled
+def driven_on(
+    kind: CarKind, reach: Real, world: World, car: Car, ego: Car, free: Flag
+) -> Car:
     """The car a step later, with the acceleration it has.
 
     Args:
@@ -207,22 +230,49 @@ def driven_on(kind: CarKind, reach: Real, world: World, car: Car, ego: Car) -> C
         world: Road, law, time and step.
         car: Before.
         ego: The driven car.
+        free: Whether there is room where it would come in again.
     """
     dt = world.dt
     velocity = xp.maximum(car.velocity + car.acceleration * dt, 0.0)
     moved = car.position + (car.velocity + velocity) / 2.0 * dt
-    streams = kind.streams > 0.5
-    behind = streams & (moved < ego.position - reach)
-    beyond = streams & (moved > ego.position + reach)
-    back = xp.select(behind, moved + 2.0 * reach, moved)
+    away = xp.absolute(moved - ego.position) > reach
+    again = kind.streams * xp.select(away & free, 1.0, 0.0) > 0.5
     share = smooth(car.changing / world.law.change_duration)
     centre = lane_centre(world.road, car.lane) + kind.offset
     return car._replace(
-        position=xp.select(beyond, back - 2.0 * reach, back),
+        position=xp.select(again, other_end(reach, car, ego), moved),
         velocity=velocity,
         changing=car.changing + dt,
         lateral=car.origin + (centre - car.origin) * share,
     )
+
+
+@compiled
+def has_room_again(
+    parameters: FleetParameters, fleet: Fleet, world: World, car: Car, index: int
+) -> Flag:
+    """Whether a car of a stream can come in again at the other end.
+
+    It is not about to change lanes, and nobody there would have to brake for it.
+    """
+    ego: Car = _read_car(fleet.cars, 0)
+    there = Spot(
+        place=index,
+        position=other_end(parameters.range, car, ego),
+        lateral=lane_centre(world.road, car.lane),
+        half_width=_LANE_REACH,
+        lane=car.lane,
+    )
+    seen, law = outlook(parameters, fleet, there), world.law
+    ahead = law.standstill_gap + law.headway * xp.maximum(
+        car.velocity, 2.0 * car.velocity - seen.ahead.velocity
+    )
+    behind = law.standstill_gap + law.headway * xp.maximum(
+        seen.behind.velocity, 2.0 * seen.behind.velocity - car.velocity
+    )
+    room = (seen.ahead.gap > ahead) & (seen.behind.gap > behind)
+    is_next = has_turn(parameters, world, index)
+    return room & is_next & (car.changing > law.change_duration)
 
 
 @compiled
@@ -245,7 +295,8 @@ def moved_car(
         second=second,
         third=third,
     )
-    on = driven_on(kind, parameters.range, world, car, ego)
+    free = has_room_again(parameters, fleet, world, car, index)
+    on = driven_on(kind, parameters.range, world, car, ego, free)
     return xp.select(car.present > 0.5, on, car)
 
 

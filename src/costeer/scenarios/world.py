@@ -52,7 +52,7 @@ _FREE_AHEAD = 40.0
 _FASTER_BY = 0.08
 """What cars in the next lane towards overtaking want to drive faster [-]."""
 
-_TRUCKS_SLOWER = 0.8
+_TRUCKS_SLOWER = 0.9
 """Speed that trucks want to drive over that of cars [-]."""
 
 
@@ -208,7 +208,7 @@ def _stream(scenario: Scenario, road: RoadParameters, draw: Draw) -> list[CarKin
         share = (row + 0.3 + 0.4 * rng.random()) / rows
         place = (2.0 * share - 1.0) * stream.reach
         is_truck = bool(rng.random() < stream.trucks)
-        desired = mean * (1.0 + stream.spread * float(rng.standard_normal()))
+        desired = mean * (1.0 + stream.spread * float(rng.uniform(-1.7, 1.7)))
         desired *= 1.0 + _FASTER_BY * abs(lane - home)
         desired *= _TRUCKS_SLOWER if is_truck else 1.0
         if lane == home and abs(place) < _FREE_AHEAD:

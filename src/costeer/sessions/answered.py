@@ -34,9 +34,7 @@ class Answered(NamedTuple):
 def answers_in(session: Session) -> list[Answered]:
     """Questionnaires that were answered, in the order of people and time."""
     slots = {row["participant"]: row["slot"] for row in session.people()}
-    rows = session.store.rows(
-        "SELECT * FROM answers ORDER BY participant, monotonic, step, rowid"
-    )
+    rows = session.store.rows("SELECT * FROM answers ORDER BY participant, rowid")
     steps: dict[tuple[str, str], list[Row]] = {}
     for row in rows:
         steps.setdefault((row["participant"], row["step"]), []).append(row)

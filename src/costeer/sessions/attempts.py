@@ -214,7 +214,7 @@ def listed_attempts(store: Store, participant: str = "") -> list[Row]:
         (" WHERE participant = ?", [participant]) if participant else ("", [])
     )
     rows = store.rows(
-        f"SELECT * FROM attempts{where} ORDER BY participant, monotonic", *given
+        f"SELECT * FROM attempts{where} ORDER BY participant, rowid", *given
     )
     for row in rows:
         row["facts"], row["measures"] = map(json.loads, (row["facts"], row["measures"]))

@@ -65,7 +65,11 @@ FIELDS: dict[str, tuple[Field, ...]] = {
         ),
         Field("plan_hash", "of that plan, whatever its comments say"),
         Field("language", "of texts and questionnaires"),
-        Field("status", "where it stands", range="active, finished or dropped"),
+        Field(
+            "status",
+            "where it stands",
+            range="active, finished, stopped, declined or dropped",
+        ),
         _REASON,
         Field("began_at", "when the participant first sat down", range=UTC),
         _MONOTONIC,

@@ -24,13 +24,35 @@ _KEPT = ("paused", "resumed", "gap", "fault", "error", "lost", "parameter", "con
 
 
 def event_rows(session: Session) -> list[dict[str, Any]]:
-    """Rows of `events.csv`; Any: cells."""
-    told_by_store = session.store.rows("SELECT * FROM events ORDER BY number")
-    rows = [_of_store(each) for each in told_by_store]
-    rows += list(clock_jumps(told_by_store))
+    """Rows of `events.csv` in the order in which things happened; Any: cells.
+
+    A wall clock that was set on the way does not change the order.
+    """
+    rows: list[tuple[float, dict[str, Any]]] = []
+    ahead: dict[tuple[str, str, str], float] = {}
+    set_by, before = 0.0, None
+    for event in session.store.rows("SELECT * FROM events ORDER BY number"):
+        jump = None if before is None else _jump(before, event)
+        if before is not None and jump is not None:
+            set_by += _set_by(before, event, jump["length"])
+            rows.append((seconds_of(event["utc"]) - set_by, jump))
+        rows.append((seconds_of(event["utc"]) - set_by, _of_store(event)))
+        if event["kind"] == "attempt":
+            ahead[event["participant"], event["step"], event["text"]] = set_by
+        before = event
     for attempt in listed_attempts(session.store):
-        rows += _of_record(session.folder, attempt)
-    return sorted(rows, key=lambda row: row["utc"])
+        key = attempt["participant"], attempt["step"], f"attempt {attempt['attempt']}"
+        for row in _of_record(session.folder, attempt):
+            moment = seconds_of(row["utc"]) if row["utc"] else -math.inf
+            rows.append((moment - ahead.get(key, 0.0), row))
+    return [row for _, row in sorted(rows, key=lambda each: each[0])]
+
+
+def _set_by(before: Row, after: Row, jump: float | None) -> float:
+    """How far the wall clock was set between two events [s]; at a restart at least."""
+    if jump is not None:
+        return jump
+    return min(0.0, seconds_of(after["utc"]) - seconds_of(before["utc"]))
 
 
 def _of_store(event: Row) -> dict[str, Any]:
@@ -42,18 +64,22 @@ def _of_store(event: Row) -> dict[str, Any]:
 
 def clock_jumps(events: Sequence[Row]) -> Iterator[dict[str, Any]]:
     """Where wall clock and monotonic clock disagree from one event to the next."""
-    for before, after in pairwise(events):
-        wall = seconds_of(after["utc"]) - seconds_of(before["utc"])
-        steady = after["monotonic"] - before["monotonic"]
-        if steady < 0.0:
-            yield _clock_row(
-                after, "clock restart", "the computer was started anew", None
-            )
-        elif abs(wall - steady) > SMALLEST_JUMP:
-            ahead = round(wall - steady, 3)
-            way = "forward" if ahead > 0 else "back"
-            text = f"the wall clock went {way} by {abs(ahead):g} s: it was set, or the "
-            yield _clock_row(after, "clock jump", f"{text}computer slept", ahead)
+    found = (_jump(before, after) for before, after in pairwise(events))
+    return (each for each in found if each is not None)
+
+
+def _jump(before: Row, after: Row) -> dict[str, Any] | None:
+    """The row of a clock that was set between two events; None if it was not."""
+    wall = seconds_of(after["utc"]) - seconds_of(before["utc"])
+    steady = after["monotonic"] - before["monotonic"]
+    if steady < 0.0:
+        return _clock_row(after, "clock restart", "the computer was started anew", None)
+    ahead = round(wall - steady, 3)
+    if abs(ahead) <= SMALLEST_JUMP:
+        return None
+    way = "forward" if ahead > 0 else "back"
+    text = f"the wall clock went {way} by {abs(ahead):g} s: it was set, or the "
+    return _clock_row(after, "clock jump", f"{text}computer slept", ahead)
 
 
 def _clock_row(

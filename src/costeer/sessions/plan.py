@@ -11,19 +11,14 @@ import hashlib
 import math
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from importlib.resources import files
 from itertools import pairwise
-from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 
-from costeer.base.nested import filled, parsed_mapping
-from costeer.loop.scenario import TrialSetup, check_setup
-from costeer.methods.conditions import CONDITION_NAMES, MANUAL
-from costeer.methods.conditions import condition as condition_named
-from costeer.runtime.setup import INTENTION_SOURCES
-from costeer.study.design import MOST_CONDITIONS, williams_square
+from costeer.loop.scenario import TrialSetup
+from costeer.methods.conditions import MANUAL
+from costeer.study.design import williams_square
 
 KINDS = ("instruct", "consent", "ask", "practise", "drive", "break", "trials")
 """What a step of a plan can be."""
@@ -140,109 +135,9 @@ DONE = Step("done", "done")
 """After the last step."""
 
 
-def paper_plan_text() -> str:
-    """The plan of the paper's experiment, as it is written into a new folder."""
-    return files("costeer.sessions").joinpath("paper.yaml").read_text("utf-8")
-
-
-def read_plan(path: Path) -> Plan:
-    """The plan of a file.
-
-    Raises:
-        ValueError: If it cannot be; with the line.
-        OSError: If it cannot be read.
-    """
-    return parsed_plan(path.read_bytes(), str(path))
-
-
-def parsed_plan(text: bytes | str, name: str = PLAN_FILE) -> Plan:
-    """The plan of a text.
-
-    Raises:
-        ValueError: If it cannot be.
-    """
-    plan = filled(Plan, parsed_mapping(text, name), name)
-    check_plan(plan, name)
-    return plan
-
-
 def plan_hash(plan: Plan) -> str:
     """What tells two plans apart, whatever their comments say."""
     return hashlib.sha256(repr(plan).encode()).hexdigest()[:16]
-
-
-def check_plan(plan: Plan, name: str = PLAN_FILE) -> None:
-    """Refuse a plan that nobody could drive.
-
-    Raises:
-        ValueError: Naming the entry, the value and the way out.
-    """
-    if not plan.steps:
-        raise ValueError(f"{name} has no steps; list them under steps:")
-    if not 1 <= plan.participants <= 1000:
-        raise ValueError(f"{name}: participants is {plan.participants}; give 1 to 1000")
-    if plan.intention not in INTENTION_SOURCES:
-        raise ValueError(
-            f"{name}: intention '{plan.intention}' is not known; choose one of "
-            f"{', '.join(INTENTION_SOURCES)}"
-        )
-    for place, entry in enumerate(plan.steps, start=1):
-        _check_step(entry, f"{name}: step {place}")
-    for step in session_steps(plan, 1):
-        if step.drives:
-            check_setup(trial_of(plan, step, 1))
-
-
-def _check_step(step: PlanStep, where: str, inner: bool = False) -> None:
-    """Refuse an entry that is not whole.
-
-    Raises:
-        ValueError: Naming it.
-    """
-    if step.kind not in KINDS or (inner and step.kind not in ("ask", "instruct")):
-        known = ("ask", "instruct") if inner else KINDS
-        raise ValueError(f"{where}: kind '{step.kind}' is none of {', '.join(known)}")
-    where = f"{where} ({step.kind})"
-    if step.kind in ("ask", "consent") and not step.instrument:
-        raise ValueError(f"{where} names no instrument, as instrument: nasa-tlx")
-    if step.kind in ("practise", "drive"):
-        condition_named(step.condition or "none")
-    if step.kind == "practise" and not 0.0 < step.minutes <= 120.0:
-        raise ValueError(f"{where}: minutes is {step.minutes:g}; give 0.1 to 120")
-    if step.kind == "practise" and step.longest_minutes < step.minutes:
-        raise ValueError(
-            f"{where}: longest_minutes is {step.longest_minutes:g}, less than minutes"
-        )
-    if step.kind == "trials":
-        _check_block(step, where)
-
-
-def _check_block(step: PlanStep, where: str) -> None:
-    """Refuse a block of trials that cannot be ordered.
-
-    Raises:
-        ValueError: Naming what is wrong.
-    """
-    names = [condition_named(name).name for name in step.conditions]
-    if not names or len(set(names)) != len(names):
-        raise ValueError(
-            f"{where}: conditions are {list(step.conditions)}; name each once, of "
-            f"{', '.join(CONDITION_NAMES)}"
-        )
-    if step.order not in ORDERS:
-        raise ValueError(
-            f"{where}: order '{step.order}' is not known; choose one of "
-            f"{', '.join(ORDERS)}"
-        )
-    if step.order == "williams" and len(names) > MOST_CONDITIONS:
-        raise ValueError(
-            f"{where}: {len(names)} conditions; a balanced order has up to "
-            f"{MOST_CONDITIONS}"
-        )
-    if step.break_every < 0:
-        raise ValueError(f"{where}: break_every is {step.break_every}; give 0 or more")
-    for place, each in enumerate(step.after, start=1):
-        _check_step(each, f"{where}, after, entry {place}", inner=True)
 
 
 def session_steps(plan: Plan, slot: int) -> tuple[Step, ...]:

@@ -17,7 +17,8 @@ from typing import NamedTuple
 
 from costeer.base.files import write_text
 from costeer.sessions.attempts import Attempts
-from costeer.sessions.plan import PLAN_FILE, balance, paper_plan_text, parsed_plan
+from costeer.sessions.plan import PLAN_FILE, balance
+from costeer.sessions.plan_file import paper_plan_text, parsed_plan
 from costeer.sessions.robot import RehearsalSettings, Robot, digest, playwright
 from costeer.sessions.session import Session
 from costeer.sessions.standing import WHOLE

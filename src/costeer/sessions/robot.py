@@ -256,7 +256,7 @@ class Robot:
     def _drive(self, step: dict[str, Any]) -> None:
         """Say that one is ready, start in the frame, go on after a pause."""
         stands = step["drive"]["state"]
-        frame = self._page.locator("iframe")
+        frame = self._page.locator("iframe:not([inert])")
         if stands in ("starting", "ready", "waiting") and not frame.count():
             button = self._page.locator("#step button")
             if button.count() and button.first.is_visible():
@@ -264,9 +264,11 @@ class Robot:
             return
         if stands == "running" and step["kind"] == "practise" and step.get("enough"):
             with suppress(urllib.error.HTTPError):
-                self.server.ask("/api/session/next", {"step": step["id"]})
+                self.server.ask(
+                    "/api/session/next", {"participant": self._who, "step": step["id"]}
+                )
         if stands in ("ready", "paused") and frame.count():
-            inside = self._page.frame_locator("iframe").locator("body")
+            inside = self._page.frame_locator("iframe:not([inert])").locator("body")
             inside.press("Enter", timeout=5000)
             time.sleep(0.4)
 

@@ -11,24 +11,26 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from costeer.base.files import read_whole
 from costeer.sessions.plan import (
     DONE,
     PLAN_FILE,
     Plan,
     Step,
-    parsed_plan,
     plan_hash,
     session_steps,
 )
+from costeer.sessions.plan_file import kept_plan, parsed_plan
+from costeer.sessions.questionnaires.answers import cleaned
 from costeer.sessions.standing import (
     ACTIVE,
     DROPPED,
     FINISHED,
-    PSEUDONYM,
+    HOLDING,
     WHOLE,
-    WITHDRAWN,
     OutOfStepError,
     Standing,
+    known_person,
     told_reason,
 )
 from costeer.sessions.store import STORE_FILE, Row, Store, now
@@ -52,11 +54,12 @@ class Session:
         plan_file = folder / PLAN_FILE
         if not plan_file.is_file():
             raise ValueError(
-                f"{folder} is no study with people: it has no {PLAN_FILE}; make one "
-                f"with: costeer session new {folder}"
+                f"{folder} holds no study with people, as there is no {PLAN_FILE} in "
+                f"it; make one with: costeer session new {folder}"
             )
-        self._text = plan_file.read_text("utf-8")
-        self.plan = parsed_plan(self._text, str(plan_file))
+        text = read_whole(plan_file)
+        self.plan = parsed_plan(text, str(plan_file))
+        self._text = text.decode("utf-8")
         self.store = Store(folder / STORE_FILE)
         self._plans: dict[int, Plan] = {}
         self._steps: dict[str, tuple[Step, ...]] = {}
@@ -103,7 +106,7 @@ class Session:
         version = int(self.person(participant)["plan"])
         if version not in self._plans:
             rows = self.store.rows("SELECT text FROM plans WHERE version = ?", version)
-            self._plans[version] = parsed_plan(rows[0]["text"], f"plan {version}")
+            self._plans[version] = kept_plan(rows[0]["text"], f"plan {version}")
         return self._plans[version]
 
     def steps_of(self, participant: str) -> tuple[Step, ...]:
@@ -117,7 +120,7 @@ class Session:
 
     def people(self) -> list[Row]:
         """Participants in the order in which they came."""
-        return self.store.rows("SELECT * FROM participants ORDER BY utc, participant")
+        return self.store.rows("SELECT * FROM participants ORDER BY rowid")
 
     def person(self, participant: str) -> Row:
         """A participant.
@@ -130,17 +133,14 @@ class Session:
         )
         if not found:
             raise ValueError(
-                f"there is no participant '{participant}'; the experimenter begins one"
+                f"there is no participant '{participant}'; costeer session status "
+                f"{self.folder} lists them"
             )
         return found[0]
 
     def free_slot(self) -> int:
         """The first slot that nobody holds: a dropout's before a new one."""
-        held = {
-            int(row["slot"])
-            for row in self.people()
-            if row["status"] in (ACTIVE, FINISHED)
-        }
+        held = {int(row["slot"]) for row in self.people() if row["status"] in HOLDING}
         return next(slot for slot in range(1, len(held) + 2) if slot not in held)
 
     def begin(self, participant: str, language: str = "") -> Standing:
@@ -154,19 +154,9 @@ class Session:
             ValueError: If it is no pseudonym, or who bears it has ended.
             StoreError: If it cannot be written.
         """
-        if not PSEUDONYM.fullmatch(participant):
-            raise ValueError(
-                f"participant is {participant[:40]!r}; give a pseudonym: up to four "
-                "letters and a number, as P01. Names do not belong here"
-            )
-        known = [row for row in self.people() if row["participant"] == participant]
-        if known and known[0]["status"] in (WITHDRAWN, DROPPED):
-            raise ValueError(
-                f"participant {participant} has {known[0]['status']}; give another "
-                "pseudonym"
-            )
+        known = known_person(participant, self.people())
         with self.store.transaction():
-            if not known:
+            if known is None:
                 self.store.put(
                     "participants",
                     {
@@ -193,10 +183,27 @@ class Session:
             StoreError: If it cannot be written.
         """
         told = told_reason(reason)
-        row = self.person(participant) | {"status": DROPPED, "reason": told}
         with self.store.transaction():
-            self.store.put("participants", row)
+            self.set_status(participant, DROPPED, told)
             self.store.tell("dropped", told, participant)
+
+    def set_status(
+        self, participant: str, status: str, reason: str = "", slot: int = 0
+    ) -> None:
+        """Write how it stands with somebody, within a transaction; slot 0: the same."""
+        changed = {"status": status, "reason": reason} | (
+            {"slot": slot} if slot else {}
+        )
+        self.store.put("participants", self.person(participant) | changed)
+        self._steps.pop(participant, None)
+
+    def status_of(self, participant: str) -> str:
+        """How it stands with a participant.
+
+        Raises:
+            ValueError: If there is none.
+        """
+        return str(self.person(participant)["status"])
 
     # Steps
 
@@ -230,6 +237,8 @@ class Session:
             OutOfStepError: If another is on.
         """
         on = self.standing(participant).step
+        if step == DONE.id:
+            raise OutOfStepError("the session is over; nothing is left to do")
         if on.id != step:
             raise OutOfStepError(
                 f"step '{step}' is not on; {participant} stands at '{on.id}'"
@@ -276,9 +285,9 @@ class Session:
         self.store.tell(f"step {state}", reason, participant, step)
         ids = [each.id for each in self.steps_of(participant)]
         done = {step, *self.over(participant)}
-        if all(each in done for each in ids if each != DONE.id):
-            row = self.person(participant) | {"status": FINISHED}
-            self.store.put("participants", row)
+        is_active = self.status_of(participant) == ACTIVE
+        if is_active and all(each in done for each in ids if each != DONE.id):
+            self.set_status(participant, FINISHED)
             self.store.tell("finished", participant=participant)
 
     def repeat(self, participant: str, step: str, reason: str) -> None:
@@ -292,6 +301,9 @@ class Session:
         known = {each.id: each for each in self.steps_of(participant)}
         if step not in known or step == DONE.id:
             raise ValueError(f"{participant} has no step '{step}'")
+        if step not in self.over(participant):
+            raise OutOfStepError(f"step '{step}' is not over; it cannot be repeated")
+        before = self.answers_of(participant, step)
         with self.store.transaction():
             self.store.run(
                 "DELETE FROM steps WHERE participant = ? AND step = ?",
@@ -306,9 +318,10 @@ class Session:
                 "DELETE FROM answers WHERE participant = ? AND step = ?",
                 *(participant, step),
             )
-            row = self.person(participant) | {"status": ACTIVE}
-            self.store.put("participants", row)
-            self.store.tell("repeat", told, participant, step)
+            if self.status_of(participant) == FINISHED:
+                self.set_status(participant, ACTIVE)
+            answered = {"answers": before} if before else {}
+            self.store.tell("repeat", told, participant, step, answered)
 
     # Answers
 
@@ -372,7 +385,7 @@ class Session:
             ValueError: If it is empty or too long.
             StoreError: If it cannot be written.
         """
-        told = text.strip()
+        told = cleaned(text)
         if not 0 < len(told) <= 2000:
             raise ValueError("a note has 1 to 2,000 characters")
         step = self.standing(participant).step.id if participant else ""

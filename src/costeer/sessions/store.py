@@ -190,12 +190,23 @@ class Store:
             except sqlite3.Error as error:
                 raise StoreError(f"{self.path} cannot be read: {error}") from error
 
+    @property
+    def changes(self) -> int:
+        """Rows changed since it was opened: what was read holds while it stays."""
+        return self._file.total_changes
+
     def put(self, table: str, row: Mapping[str, Any]) -> None:
-        """Write a row, within a transaction; one with the same key is replaced."""
+        """Write a row, within a transaction; one with the same key is changed.
+
+        A changed row keeps its place: `ORDER BY rowid` is the order in which rows came,
+        whatever was done to the clock.
+        """
         names = ", ".join(f'"{name}"' for name in row)
         marks = ", ".join("?" * len(row))
+        changed = ", ".join(f'"{name}" = excluded."{name}"' for name in row)
         self._file.execute(
-            f"INSERT OR REPLACE INTO {table} ({names}) VALUES ({marks})",
+            f"INSERT INTO {table} ({names}) VALUES ({marks}) "
+            f"ON CONFLICT DO UPDATE SET {changed}",
             tuple(map(_kept, row.values())),
         )
 

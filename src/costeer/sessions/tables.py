@@ -185,7 +185,7 @@ def _counted(session: Session, person: Row, own: Sequence[Row]) -> dict[str, Row
         return {}
     return {
         each["step"]: each
-        for each in own
+        for each in sorted(own, key=lambda row: int(row["attempt"]))
         if each["kind"] == "drive"
         and each["state"] == WHOLE
         and not each["excluded"]

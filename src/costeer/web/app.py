@@ -86,7 +86,9 @@ def application(routes: list[BaseRoute], folder: Path | None) -> Starlette:
 
 def json_response(message: dict[str, object]) -> Response:
     """An answer of JSON."""
-    return Response(encoded(message), media_type="application/json")
+    # Half of a pair of surrogates, which JSON may hold, is no UTF-8.
+    text = encoded(message).encode("utf-8", "replace")
+    return Response(text, media_type="application/json")
 
 
 def hello(session: DriveSession, role: Role) -> dict[str, object]:

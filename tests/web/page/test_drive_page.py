@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from costeer.sessions.questionnaires.texts import load_texts
 from tests.web.page.conftest import until, wait_for
 from tests.web.page.stub import Json, Stub, served
 
@@ -249,6 +250,47 @@ def test_a_page_that_comes_late_is_told_how_it_stands(browser: Browser) -> None:
         assert "Enter" not in banner(page)
         assert page.locator("#losses").inner_text() == "No network."
         page.close()
+
+
+FRAMED = """(texts) => {
+  const frame = document.createElement("iframe");
+  Object.assign(frame, {id: "drive", src: "/?low&clean", width: 480, height: 270});
+  Object.assign(frame.dataset, {texts: JSON.stringify(texts), lang: "de"});
+  document.body.replaceChildren(frame);
+}"""
+"""As the page of a session holds the page of a drive."""
+
+
+def test_in_a_session_the_participants_language_is_spoken(browser: Browser) -> None:
+    stub = Stub()
+    stub.tables["losses"] = ["Start costeer drive again."]
+    with served(stub) as address:
+        page = browser.new_page(viewport={"width": 640, "height": 360})
+        page.goto(f"{address}/page.css")
+        page.evaluate(FRAMED, load_texts("de").pages)
+        inside = page.frame_locator("#drive")
+        told = inside.locator("#banner")
+        told.filter(has_text="Nehmen Sie das Lenkrad").wait_for()
+        assert told.locator("kbd").inner_text() == "Enter"
+        assert inside.locator("html").get_attribute("lang") == "de"
+        stub.frame |= {"fault": 5.0}  # before the start it is the experimenter's alone
+        page.wait_for_timeout(300)
+        assert told.inner_text().startswith("Bereit")
+        stub.frame |= {"run_state": 2.0}
+        told.filter(has_text="Die Fahrt wurde unterbrochen").wait_for()
+        assert "doctor" not in told.inner_text()
+        inside.locator("body").press("h")
+        for name in ("#losses", "#help"):
+            assert inside.locator(name).is_hidden()
+        page.close()
+
+
+def test_each_language_has_words_for_what_a_participant_may_see() -> None:
+    names = {state["name"] for state in Stub().tables["run_states"]} - {"running"}
+    for language in ("en", "de", "ja"):
+        pages = load_texts(language).pages
+        for name in names | {"connecting", "lost", "silent", "over", "refused"}:
+            assert pages[f"drive_{name}_title"]
 
 
 def test_a_second_page_is_told_why_it_does_not_drive(browser: Browser) -> None:

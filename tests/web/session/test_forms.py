@@ -88,6 +88,10 @@ def test_an_untouched_scale_is_unanswered(page: Page) -> None:
     assert error.inner_text() == "Please answer this question."
     tick(page, "physical_demand", "0")
     assert page.locator("[aria-invalid=true]").count() == 4
+    assert page.locator("[role=alert]").inner_text().startswith("4 answers are missing")
+    for item in ("temporal_demand", "performance", "effort", "frustration"):
+        tick(page, item, "0")
+    assert page.locator("[role=alert]").inner_text() == ""
 
 
 def test_a_scale_is_answered_by_keyboard(page: Page) -> None:

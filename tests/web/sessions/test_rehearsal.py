@@ -7,7 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from costeer.sessions.plan import balance, parsed_plan, session_steps
+from costeer.sessions.plan import balance, session_steps
+from costeer.sessions.plan_file import parsed_plan
 from costeer.sessions.rehearse import rehearsal_plan, rehearse
 from costeer.sessions.robot import RehearsalSettings
 

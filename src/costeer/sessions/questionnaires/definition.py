@@ -6,14 +6,12 @@ import itertools
 import math
 import re
 from collections.abc import Mapping, Sequence
-from functools import lru_cache
+from functools import cache, lru_cache
 from importlib.resources import files
 from pathlib import Path
 from typing import Any, Literal, NamedTuple, get_args
 
-import yaml
-
-from costeer.base.files import read_whole
+from costeer.base import nested
 
 Kind = Literal["scale", "choice", "number", "text", "pairs", "yes_no"]
 How = Literal["mean", "sum", "weighted"]
@@ -24,8 +22,6 @@ LONGEST_TEXT = 2000
 MOST_STEPS = 200
 """Most positions of a scale."""
 
-_LARGEST_FILE = 1_000_000
-_LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)  # in C ten times as fast
 _NAME = re.compile(r"[a-z][a-z0-9_-]*")
 _FIELDS = {"name", "version", "source", "texts", "items", "scores", "stop"}
 _ITEM_FIELDS = {
@@ -124,6 +120,7 @@ def instrument_names(folder: Path | None = None) -> tuple[str, ...]:
     return tuple(sorted({f.stem for place in places for f in place.glob("*.yaml")}))
 
 
+@cache
 def own_folder(name: str) -> Path:
     """The folder of instruments or texts that costeer brings."""
     return Path(str(files("costeer.sessions.questionnaires"))) / name
@@ -169,14 +166,7 @@ def read_mapping(path: Path) -> dict[str, Any]:  # Any: as YAML gives it back
 @lru_cache(maxsize=64)  # pages ask for the words twice a second
 def _read_mapping(path: Path, changed: int) -> dict[str, Any]:
     """As `read_mapping`, of a file that was changed at that time [ns]."""
-    content = read_whole(path, _LARGEST_FILE)
-    try:
-        said = yaml.load(content, _LOADER)
-    except Exception as error:  # whatever the parser makes of what is no YAML
-        raise ValueError(f"{path} is not YAML: {error}") from error
-    if not isinstance(said, dict):
-        raise ValueError(f"{path} has no fields; give NAME: VALUE lines")
-    return {str(key): value for key, value in said.items()}
+    return nested.read_mapping(path)
 
 
 Said = Mapping[str, Any]  # Any: a field as YAML gives it back

@@ -74,26 +74,37 @@ def _participant_routes(desk: Desk) -> list[BaseRoute]:
         desk.page_seen = time.monotonic()
         return await _answered(desk.state)
 
-    async def answer_next(request: Request) -> Response:
-        body = await _body(request)
-        if isinstance(body, Response):
-            return body
-        return await _answered(lambda: desk.next(str(body.get("step"))), desk)
+    def takes(does: Callable[[str, dict[str, Any]], dict[str, Any]]) -> Any:
+        async def answer(request: Request) -> Response:
+            body = await _body(request)
+            if isinstance(body, Response):
+                return body
+            return await _answered(
+                lambda: does(str(body.get("participant")), body), desk
+            )
 
-    async def answer_answers(request: Request) -> Response:
-        body = await _body(request)
-        if isinstance(body, Response):
-            return body
+        return answer
+
+    def answers(who: str, body: dict[str, Any]) -> dict[str, Any]:
         given = body.get("answers")
         if not isinstance(given, Mapping):
-            return _refused(400, "answers are no names and values")
-        step = str(body.get("step"))
-        return await _answered(lambda: desk.answers(step, given), desk)
+            raise ValueError("answers are no names and values")
+        return desk.answers(who, str(body.get("step")), given)
 
+    does = {
+        "next": lambda who, body: desk.next(who, str(body.get("step"))),
+        "answers": answers,
+        "stop": lambda who, body: desk.stop_taking_part(
+            who, body.get("delete") is True
+        ),
+        "resume": lambda who, body: desk.take_part_again(who),
+    }
     return [
         Route("/api/session", answer_state),
-        Route("/api/session/next", answer_next, methods=["POST"]),
-        Route("/api/session/answers", answer_answers, methods=["POST"]),
+        *(
+            Route(f"/api/session/{name}", takes(work), methods=["POST"])
+            for name, work in does.items()
+        ),
     ]
 
 

@@ -4,14 +4,18 @@ from __future__ import annotations
 
 import os
 import shutil
+import threading
 import time
 from collections.abc import Callable, Mapping
+from contextlib import nullcontext
 from datetime import datetime
 from typing import Any
 
-from costeer.sessions.plan import balance
+from costeer.sessions.plan import Plan, PlanStep, balance
+from costeer.sessions.plan_file import check_words
 from costeer.sessions.questionnaires.texts import languages
-from costeer.sessions.standing import ACTIVE, FINISHED
+from costeer.sessions.standing import HOLDING, known_person
+from costeer.sessions.stopping import take_part_again
 from costeer.sessions.store import now
 from costeer.sessions.withdrawal import num_withdrawn, withdraw
 from costeer.web.sessions.desk import Desk
@@ -34,6 +38,8 @@ class Console:
 
     def __init__(self, desk: Desk) -> None:
         self._desk, self._session = desk, desk.session
+        self._checking = threading.Lock()
+        self._kept: tuple[tuple[int, str], dict[str, Any]] = (-1, ""), {}
 
     def shown(self) -> dict[str, Any]:
         """Everything the console shows."""
@@ -50,21 +56,36 @@ class Console:
                 "zone": datetime.now().astimezone().tzname(),
                 "participant": state["participant"],
                 "step": step,
-                "steps": self._all_steps(),
-                "people": self._people(),
+                **self._of_store(),
                 "languages": languages(self._session.folder),
                 "language": self._session.plan.language,
                 "planned": self._session.plan.participants,
-                "withdrawn": num_withdrawn(self._session),
-                "attempts": self._attempts(),
                 "checks": self._desk.checked,
                 "page_seen": time.monotonic() - self._desk.page_seen,
                 "disk": {"free": free, "enough": free > SCARCE},
-                "balance": self._balance(),
                 "processes": self._processes(),
                 "trouble": self._desk.trouble,
+                "wording": self._desk.wording.trouble,
+                "stopped": state["stopped"],
+            }
+
+    def _of_store(self) -> dict[str, Any]:
+        """What follows from the store alone, kept as long as nothing is written.
+
+        The console asks twice a second, in the middle of drives.
+        """
+        key = self._session.store.changes, self._desk.participant
+        if self._kept[0] != key:
+            told = {
+                "steps": self._all_steps(),
+                "people": self._people(),
+                "withdrawn": num_withdrawn(self._session),
+                "attempts": self._attempts(),
+                "balance": self._balance(),
                 "events": self._events(),
             }
+            self._kept = key, told
+        return self._kept[1]
 
     def _all_steps(self) -> list[dict[str, Any]]:
         if not self._desk.participant:
@@ -81,20 +102,18 @@ class Console:
         ]
 
     def _people(self) -> list[dict[str, Any]]:
+        over: dict[str, set[str]] = {}
+        for row in self._session.store.rows("SELECT participant, step FROM steps"):
+            over.setdefault(row["participant"], set()).add(row["step"])
         told = []
         for row in self._session.people():
-            standing = self._session.standing(row["participant"])
-            told.append(
-                {
-                    "participant": row["participant"],
-                    "slot": row["slot"],
-                    "status": row["status"],
-                    "reason": row["reason"],
-                    "step": standing.step.id,
-                    "number": standing.number,
-                    "of": standing.of,
-                }
-            )
+            steps = self._session.steps_of(row["participant"])
+            done = over.get(row["participant"], set())
+            last = len(steps) - 1
+            place = next((n for n, e in enumerate(steps) if e.id not in done), last)
+            names = ("participant", "slot", "status", "reason")
+            about = {"step": steps[place].id, "number": place + 1, "of": last}
+            told.append({name: row[name] for name in names} | about)
         return told
 
     def _attempts(self) -> list[dict[str, Any]]:
@@ -114,10 +133,13 @@ class Console:
         return {"server": os.getpid(), **told}
 
     def _balance(self) -> dict[str, Any]:
+        """How even the orders of those are who drive the blocks of the plan of now."""
+        blocks = _blocks(self._session.plan)
         slots = [
             int(row["slot"])
             for row in self._session.people()
-            if row["status"] in (ACTIVE, FINISHED)
+            if row["status"] in HOLDING
+            and _blocks(self._session.plan_of(row["participant"])) == blocks
         ]
         found = balance(self._session.plan, slots)
         return {"places": found.places, "even": found.is_even and bool(slots)}
@@ -139,14 +161,16 @@ class Console:
         wanted = ACTIONS.get(action)
         if wanted is None:
             raise ValueError(f"there is no '{action}'; {', '.join(ACTIONS)} are known")
-        with self._desk.lock:
-            function, names = wanted
-            missing = [name for name in names if name not in given]
-            if missing:
-                raise ValueError(f"{action} needs {', '.join(missing)}")
-            more = [given[name] for name in _OPTIONAL.get(action, ()) if name in given]
+        function, names = wanted
+        missing = [name for name in names if name not in given]
+        if missing:
+            raise ValueError(f"{action} needs {', '.join(missing)}")
+        more = [given[name] for name in _OPTIONAL.get(action, ()) if name in given]
+        # What stops a drive waits for nobody, and looking at devices makes nobody wait.
+        lock = nullcontext() if action in _AT_ONCE else self._desk.lock
+        with lock:
             function(self, *(given[name] for name in names), *more)
-            return self.shown()
+        return self.shown()
 
     def begin(self, participant: str, language: str = "") -> None:
         """Let a participant sit down."""
@@ -159,7 +183,14 @@ class Console:
         if self._desk.participant and self._desk.participant != told:
             self._refuse_while_driving()
             self._desk.leave_drive("another participant sat down")
+        row = known_person(told, self._session.people())
+        if row is None:
+            check_words(self._session.plan, self._session.folder, str(language))
+        else:
+            plan = self._session.plan_of(told)
+            check_words(plan, self._session.folder, row["language"])
         self._session.begin(told, str(language))
+        take_part_again(self._session, told)
         self._desk.participant = told
         self._desk.trouble = ""
 
@@ -183,11 +214,12 @@ class Console:
         """Try again what could not be done."""
         self._desk.trouble = ""
 
-    def stop(self) -> None:
+    def stop(self, reason: str = "stopped by the experimenter") -> None:
         """End the attempt; it is kept as aborted and driven again."""
-        if self._desk.drive is None:
+        drive = self._desk.drive
+        if drive is None:
             raise ValueError("nobody drives in this step")
-        self._desk.drive.end(False, "stopped by the experimenter")
+        drive.end(False, reason)
 
     def enough(self) -> None:
         """Practice is enough, whatever the clock says."""
@@ -229,21 +261,36 @@ class Console:
             raise ValueError("type the pseudonym again to delete everything of it")
         if who == self._desk.participant:
             self.leave()
-            self._desk.wait_until_idle()
+            if not self._desk.wait_until_idle():
+                raise ValueError("the last drive is being saved; try again in a moment")
         withdraw(self._session, who)
+
+    def replace(self, participant: str, reason: str) -> None:
+        """Count a participant out, whose row of the orders is free for the next."""
+        who = str(participant)
+        if who == self._desk.participant:
+            self.leave()
+        self._session.drop(who, str(reason))
 
     def check(self) -> None:
         """Look at the devices."""
-        self._desk.checked = [
-            {"name": name, "well": well, "told": told, "utc": now().utc}
-            for name, well, told in self._desk.devices.checks()
-        ]
-        with self._session.store.transaction():
+        with self._checking:
+            found = [
+                {"name": name, "well": well, "told": told, "utc": now().utc}
+                for name, well, told in self._desk.devices.checks()
+            ]
+        with self._desk.lock, self._session.store.transaction():
+            self._desk.checked = found
             self._session.store.tell(
                 "checked",
                 participant=self._desk.participant,
                 data={"checks": self._desk.checked},
             )
+
+
+def _blocks(plan: Plan) -> list[PlanStep]:
+    """What decides the orders: the blocks of trials."""
+    return [each for each in plan.steps if each.kind == "trials"]
 
 
 ACTIONS: dict[str, tuple[Callable[..., None], tuple[str, ...]]] = {
@@ -254,7 +301,7 @@ ACTIONS: dict[str, tuple[Callable[..., None], tuple[str, ...]]] = {
     "pause": (lambda console: console._command("pause", "experimenter"), ()),
     "resume": (lambda console: console._command("resume"), ()),
     "stop": (Console.stop, ()),
-    "emergency": (Console.stop, ()),
+    "emergency": (lambda console: console.stop("emergency stop"), ()),
     "finish": (Console.enough, ()),
     "skip": (Console.skip, ("step", "reason")),
     "repeat": (Console.repeat, ("step", "reason")),
@@ -267,14 +314,14 @@ ACTIONS: dict[str, tuple[Callable[..., None], tuple[str, ...]]] = {
         ("step", "attempt", "reason"),
     ),
     "note": (Console.note, ("text",)),
-    "replace": (
-        lambda console, *given: console._session.drop(*map(str, given)),
-        ("participant", "reason"),
-    ),
+    "replace": (Console.replace, ("participant", "reason")),
     "withdraw": (Console.withdraw, ("participant", "confirm")),
     "check": (Console.check, ()),
 }
 """What the console can ask for, and what it has to say with it."""
+
+_AT_ONCE = ("emergency", "stop", "pause", "check")
+"""What does not wait until others have been answered."""
 
 _OPTIONAL = {"begin": ("language",)}
 """What may be said with an action besides."""

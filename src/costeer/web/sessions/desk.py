@@ -6,7 +6,6 @@ store has changed it before it returns.
 
 from __future__ import annotations
 
-import hashlib
 import math
 import threading
 import time
@@ -23,18 +22,15 @@ from costeer.runtime.setup import DriveSetup, check_drive
 from costeer.sessions.attempts import Attempts
 from costeer.sessions.plan import Step, trial_of
 from costeer.sessions.questionnaires.answers import checked_answers
-from costeer.sessions.questionnaires.instrument import (
-    Instrument,
-    load_instrument,
-    rendered,
-)
-from costeer.sessions.questionnaires.texts import load_texts
 from costeer.sessions.session import Session
-from costeer.sessions.standing import Standing
+from costeer.sessions.standing import ENDED, OutOfStepError, Standing
+from costeer.sessions.stopping import stop_taking_part, take_part_again
 from costeer.sessions.store import StoreError
 from costeer.web.drive import PageOptions
 from costeer.web.sessions.judged import driven_whole, measured
+from costeer.web.sessions.shown import ShownSteps, is_enough
 from costeer.web.sessions.step_drive import FAILED, Outcome, StepDrive
+from costeer.web.sessions.wording import Wording
 
 # Any, in this file: of JSON.
 
@@ -70,13 +66,14 @@ class Desk:
     def __init__(self, session: Session, devices: Devices) -> None:
         self.session, self.devices = session, devices
         self.attempts = Attempts(session, driven_whole)
+        self.wording = Wording(session.folder)
+        self._shown = ShownSteps(session, self.wording)
         self.lock = threading.RLock()
         self._idle = threading.Condition(self.lock)
         self.participant = ""
         self._drive: StepDrive | None = None
         self._driven: tuple[str, str, int] | None = None
         self._is_begun = False
-        self._break_began: dict[tuple[str, str], float] = {}
         self.checked: list[dict[str, Any]] = []
         self.trouble = ""
         self.page_seen = -math.inf
@@ -109,89 +106,49 @@ class Desk:
                 "type": "session",
                 "title": self.session.plan.title,
                 "language": language,
-                "texts": load_texts(language, self.session.folder).pages,
+                "texts": self.wording.pages(language),
                 "trouble": self.trouble,
             }
             if standing is None:
-                return told | {"participant": "", "step": None}
-            self._prepare(standing)
+                return told | {"participant": "", "step": None, "stopped": ""}
+            stopped = self._stopped(standing.participant)
+            if not stopped:
+                self._prepare(standing)
+            attempt = self._attempt(standing)
             return told | {
                 "participant": standing.participant,
-                "step": self._shown(standing),
+                "step": self._shown.shown(standing, self._drive, attempt),
+                "stopped": stopped,
             }
+
+    def _attempt(self, standing: Standing) -> int:
+        """Number of the drive that is on or comes next in the step that is on."""
+        if self._driven is not None and self._driven[1] == standing.step.id:
+            return self._driven[2]
+        return 1 + max((int(row["attempt"]) for row in standing.attempts), default=0)
+
+    def _stopped(self, participant: str) -> str:
+        """In which words the participant has stopped; empty who takes part."""
+        row = self.session.person(participant)
+        return str(row["reason"]) if row["status"] in ENDED else ""
 
     def _language(self) -> str:
         if not self.participant:
             return self.session.plan.language
         return self.session.language_of(self.participant)
 
-    def _shown(self, standing: Standing) -> dict[str, Any]:
-        """A step as the participant's page takes it."""
-        step = standing.step
-        shown: dict[str, Any] = {
-            "id": step.id,
-            "kind": step.kind,
-            **self._words(step),
-            "condition": step.condition,
-            "number": standing.number,
-            "of": standing.of,
-            "minutes": step.minutes,
-            "order": step.order,
-            "trials": self._num_trials(standing.participant),
-            "self_paced": self.session.plan_of(standing.participant).self_paced,
-        }
-        if step.kind in ("ask", "consent"):
-            shown["instrument"] = rendered(
-                self._instrument(step), self._seed(standing.participant, step)
-            )
-        if step.kind == "break":
-            shown["remaining"] = self._remaining(standing)
-        if step.drives:
-            drive = self._drive
-            shown["drive"] = {"state": "waiting"} if drive is None else drive.told()
-            shown["enough"] = self._is_enough(step)
-        return shown
-
-    def _num_trials(self, participant: str) -> int:
-        steps = self.session.steps_of(participant)
-        return sum(each.kind == "drive" for each in steps)
-
-    def _words(self, step: Step) -> dict[str, str]:
-        """Heading and text of a step: of the text files, or the plan's own."""
-        pages = load_texts(self._language(), self.session.folder).pages
-        text = pages.get(f"{step.text}_text", step.text)
-        return {"title": pages.get(f"{step.text}_title", ""), "text": text}
-
-    def _instrument(self, step: Step) -> Instrument:
-        return load_instrument(step.instrument, self._language(), self.session.folder)
-
-    def _seed(self, participant: str, step: Step) -> int:
-        """Of a questionnaire's random order: the same after a reload."""
-        told = f"{self.session.plan.seed} {participant} {step.id}"
-        return int.from_bytes(hashlib.sha256(told.encode()).digest()[:7])
-
-    def _remaining(self, standing: Standing) -> float:
-        """Of a break [s]."""
-        key = standing.participant, standing.step.id
-        began = self._break_began.setdefault(key, time.monotonic())
-        return max(0.0, round(60.0 * standing.step.minutes - time.monotonic() + began))
-
-    def _is_enough(self, step: Step) -> bool:
-        """Whether a practice was long enough."""
-        seconds = 0.0 if self._drive is None else self._drive.seconds
-        return step.kind == "practise" and seconds >= 60.0 * step.minutes
-
     # What participants do
 
-    def next(self, step: str) -> dict[str, Any]:
+    def next(self, participant: str, step: str) -> dict[str, Any]:
         """Go on from a step that needs nothing else, or from practice.
 
         Raises:
             ValueError: If it is not that far.
+            OutOfStepError: If it is somebody else's, or who it is of has stopped.
             OSError: If it cannot be kept.
         """
         with self.lock:
-            standing = self.present()
+            standing = self._of(participant)
             if step not in self.session.over(standing.participant):
                 on = self.session.on(standing.participant, step)
                 self._go_on(standing, on)
@@ -207,33 +164,82 @@ class Desk:
             raise ValueError("the questions come first")
         if on.kind == "drive":
             raise ValueError("the trial ends at the end of the course")
-        if on.kind == "break" and self._remaining(standing) > 0.0:
+        if on.kind == "break" and self._shown.remaining(standing) > 0.0:
             raise ValueError("the break is not over yet")
         if on.kind == "practise":
-            if not self._is_enough(on):
+            if not is_enough(on, self._drive):
                 raise ValueError(f"practise for at least {on.minutes:g} min")
             self._end_practice()
             return
         self.session.finish(standing.participant, on.id)
 
-    def answers(self, step: str, given: Mapping[str, Any]) -> dict[str, Any]:
+    def answers(
+        self, participant: str, step: str, given: Mapping[str, Any]
+    ) -> dict[str, Any]:
         """Take the answers of a step.
 
         Raises:
             ValueError: If one is missing or cannot be, or another step is on.
+            OutOfStepError: If they are somebody else's, or who gives them has stopped.
             OSError: If they cannot be kept.
         """
         with self.lock:
-            standing = self.present()
-            who = standing.participant
+            who = self._of(participant).participant
             steps = {each.id: each for each in self.session.steps_of(who)}
             if step not in steps or steps[step].kind not in ("ask", "consent"):
                 raise ValueError(f"step '{step}' asks nothing")
-            instrument = self._instrument(steps[step])
+            instrument = self._shown.instrument(who, steps[step])
             checked = checked_answers(instrument, given)
             about = instrument.name, instrument.version
             self.session.answer(who, step, checked, about)
             return self.state()
+
+    def stop_taking_part(self, participant: str, deletes: bool) -> dict[str, Any]:
+        """Keep that the participant takes no part, and end what is driven.
+
+        Raises:
+            OutOfStepError: If another is here, or the session is over.
+            OSError: If it cannot be kept.
+        """
+        with self.lock:
+            self._here(participant)
+            self.leave_drive("the participant stopped")
+            stop_taking_part(self.session, participant, deletes)
+            return self.state()
+
+    def take_part_again(self, participant: str) -> dict[str, Any]:
+        """Let the participant who had stopped go on.
+
+        Raises:
+            OutOfStepError: If another is here.
+            OSError: If it cannot be kept.
+        """
+        with self.lock:
+            self._here(participant)
+            take_part_again(self.session, participant)
+            return self.state()
+
+    def _here(self, participant: str) -> Standing:
+        """Where who a page is for stands; a page may be another participant's.
+
+        Raises:
+            OutOfStepError: If it is.
+        """
+        standing = self.present()
+        if standing.participant != participant:
+            raise OutOfStepError("another participant is here now")
+        return standing
+
+    def _of(self, participant: str) -> Standing:
+        """As `_here`, of who has not stopped.
+
+        Raises:
+            OutOfStepError: If the participant has.
+        """
+        standing = self._here(participant)
+        if self._stopped(participant):
+            raise OutOfStepError(f"participant {participant} has stopped")
+        return standing
 
     def present(self) -> Standing:
         """Where the participant who is here stands.
@@ -284,7 +290,7 @@ class Desk:
             ValueError: If the drive cannot be.
             OSError: If nothing can be written.
         """
-        plan, slot = self.session.plan_of(who), int(self._row(who)["slot"])
+        plan, slot = self.session.plan_of(who), int(self.session.person(who)["slot"])
         trial = trial_of(plan, step, slot)
         setup = DriveSetup(
             trial=trial,
@@ -315,10 +321,6 @@ class Desk:
             "checks": self.checked,
         }
 
-    def _row(self, participant: str) -> dict[str, Any]:
-        rows = self.session.people()
-        return next(row for row in rows if row["participant"] == participant)
-
     def _end(self, outcome: Outcome) -> None:
         """Keep how an attempt ended; called in a thread of the drive.
 
@@ -328,10 +330,12 @@ class Desk:
             driven, is_begun = self._driven, self._is_begun
         if driven is None:
             return
-        if is_begun:
-            self._keep(driven, *self._judged(driven, outcome), outcome.facts)
-        with self.lock:
-            self._forget_drive(outcome)
+        try:
+            if is_begun:
+                self._keep(driven, *self._judged(driven, outcome), outcome.facts)
+        finally:  # whatever cannot be measured, the next drive begins
+            with self.lock:
+                self._forget_drive(outcome)
 
     def _forget_drive(self, outcome: Outcome) -> None:
         """No drive is on; one that could not start is not tried again and again."""
@@ -388,6 +392,6 @@ class Desk:
             self.wait_until_idle()
         self.session.close()
 
-    def wait_until_idle(self) -> None:
-        """Wait until no drive is on any more; half a minute at most."""
-        self._idle.wait_for(lambda: self._drive is None, timeout=30.0)
+    def wait_until_idle(self) -> bool:
+        """Wait until no drive is on any more, half a minute at most; whether it is."""
+        return self._idle.wait_for(lambda: self._drive is None, timeout=30.0)

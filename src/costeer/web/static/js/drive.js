@@ -22,6 +22,8 @@ const SECOND = 1000;
 const SILENCE = 2;
 /** Code with which the server closes a socket that it does not want. */
 const REFUSED = 1008;
+/** Pictures that a page draws unseen: by then everything that they need is built. */
+const WARM_PICTURES = 5;
 const INDICATOR_KEYS = { KeyZ: 1, Comma: 1, KeyX: -1, Period: -1 };
 
 /** Rows of a table of the server by their number in a frame. */
@@ -32,9 +34,10 @@ export class Drive {
    * @param {object} hello answer of `api/hello`
    * @param {object} options of the page
    * @param {string} query tokens for the server
+   * @param {Record<string, string>} [texts] words of a session for its participant
    */
-  constructor(hello, options, query) {
-    this.hud = new Hud();
+  constructor(hello, options, query, texts) {
+    this.hud = new Hud(texts);
     this.view = new View(byId("view"), hello, options);
     this.strip = new Strip(byId("signals"));
     this.controls = new Controls();
@@ -50,16 +53,35 @@ export class Drive {
     this.lastError = "";
     this.isOver = false;
     this.panel = null;
+    this.link = null;
+    this.query = query;
+    this.drawn = 0;
     this.greet(hello);
-    this.link = new Link(socketAddress(location, query), {
+    if (isSeen()) this.join();
+    this.listen();
+    requestAnimationFrame((time) => this.draw(time));
+  }
+
+  /** Take the seat of the drive that is on now, and leave that of an earlier one. */
+  join() {
+    this.rest();
+    this.isOver = false;
+    this.frames = 0;
+    this.lastError = "";
+    this.heardAt = now();
+    this.enter(LINK_STATES.connecting);
+    this.link = new Link(socketAddress(location, this.query), {
       hello: (message) => this.greet(message),
       frames: (buffer, received) => this.receive(buffer, received),
       text: (message, received) => this.read(message, received),
       closed: (reason, code) => this.closed(reason, code),
     });
-    this.enter(LINK_STATES.connecting);
-    this.listen();
-    requestAnimationFrame((time) => this.draw(time));
+  }
+
+  /** Leave the seat; the scene stays. */
+  rest() {
+    this.link?.close();
+    this.link = null;
   }
 
   /** Take over a hello: the first, and each one after a lost connection. */
@@ -102,10 +124,10 @@ export class Drive {
     addEventListener("keyup", (event) => this.controls.key(event.code, false) && this.sendInput());
     document.addEventListener("visibilitychange", () => {
       const drives = this.hello.role === "driver" && this.state === "running";
-      if (document.hidden && drives) this.link.send({ type: "pause" });
+      if (document.hidden && drives) this.link?.send({ type: "pause" });
     });
     setInterval(() => this.sendInput(), 20);
-    setInterval(() => this.link.send({ type: "ping", t: now() * 1000 }), PING_SPACING);
+    setInterval(() => this.link?.send({ type: "ping", t: now() * 1000 }), PING_SPACING);
     setInterval(() => this.everySecond(), SECOND);
   }
 
@@ -121,7 +143,7 @@ export class Drive {
   command(code, key) {
     if (code in INDICATOR_KEYS) this.indicate(INDICATOR_KEYS[code]);
     else if (code === "Enter" || code === "NumpadEnter" || code === "Space") this.goOn();
-    else if (code === "KeyP") this.state === "paused" ? this.goOn() : this.link.send({ type: "pause" });
+    else if (code === "KeyP") this.state === "paused" ? this.goOn() : this.link?.send({ type: "pause" });
     else if (code === "KeyH" || key === "?") this.hud.toggleHelp();
     else if (code === "KeyF") toggleFullScreen();
     else if (code === "KeyS") this.toggleStrip();
@@ -131,13 +153,13 @@ export class Drive {
   }
 
   goOn() {
-    if (this.goesOnBy) this.link.send({ type: this.goesOnBy });
+    if (this.goesOnBy) this.link?.send({ type: this.goesOnBy });
   }
 
   /** The same side again switches the indicator off. */
   indicate(side) {
     const current = this.lastFrame ? this.columns.finite(this.lastFrame, "indicator") : 0;
-    this.link.send({ type: "indicator", side: current === side ? 0 : side });
+    this.link?.send({ type: "indicator", side: current === side ? 0 : side });
   }
 
   toggleStrip() {
@@ -153,7 +175,7 @@ export class Drive {
     const time = now();
     if (text === this.sentText && time - this.sentTime < HEARTBEAT) return;
     [this.sentText, this.sentTime] = [text, time];
-    if (this.link.connected) this.latency.inputSent(this.link.sendInput(controls));
+    if (this.link?.connected) this.latency.inputSent(this.link.sendInput(controls));
   }
 
   receive(buffer, received) {
@@ -194,7 +216,7 @@ export class Drive {
   /** The server ends: nothing is tried again. */
   end() {
     this.isOver = true;
-    this.link.isOver = true;
+    if (this.link) this.link.isOver = true;
     this.enter(LINK_STATES.over);
   }
 
@@ -206,8 +228,8 @@ export class Drive {
   }
 
   everySecond() {
-    if (this.link.connected && now() - this.heardAt > SILENCE) this.enter(LINK_STATES.silent);
-    this.link.sendLatencies(this.latency.takeUnsent());
+    if (this.link?.connected && now() - this.heardAt > SILENCE) this.enter(LINK_STATES.silent);
+    this.link?.sendLatencies(this.latency.takeUnsent());
     const figures = this.figures();
     this.panel?.show(figures);
     if (!this.counters) return;
@@ -229,6 +251,8 @@ export class Drive {
 
   draw(time) {
     requestAnimationFrame((next) => this.draw(next));
+    if (!isSeen() && this.drawn >= WARM_PICTURES) return;
+    this.drawn += 1;
     this.pictures.tick(time / 1000);
     const state = this.buffer.at(now());
     if (state) this.view.update(this.columns, state);
@@ -247,6 +271,13 @@ export class Drive {
       frames: this.frames,
       lastFrame: lastFrame && this.columns.named(lastFrame),
       state: this.state,
+      join: () => this.join(),
+      rest: () => this.rest(),
     };
   }
+}
+
+/** Whether this page is seen; one that is prepared in a frame for later is inert. */
+function isSeen() {
+  return !globalThis.frameElement?.inert;
 }

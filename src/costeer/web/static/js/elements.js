@@ -26,5 +26,6 @@ export function byId(id) {
 /** A number for people: a dash where there is none. */
 export function shownNumber(value, digits, unit = "") {
   if (!Number.isFinite(value)) return "–";
-  return `${value.toFixed(digits)}${unit ? ` ${unit}` : ""}`;
+  const text = value.toFixed(digits).replace(/^-(?=[0.]*$)/, ""); // no -0.0
+  return `${text}${unit ? ` ${unit}` : ""}`;
 }

@@ -10,13 +10,13 @@ export const LINK_STATES = {
   lost: {
     name: "lost",
     title: "Connection lost",
-    lines: ["The trial pauses. Trying again …", "If costeer drive has ended, start it again."],
+    lines: ["The drive pauses. Trying again …", "If costeer drive has ended, start it again."],
     warns: true,
   },
   silent: {
     name: "silent",
     title: "The server does not answer",
-    lines: ["The trial pauses. Waiting …"],
+    lines: ["The drive pauses. Waiting …"],
     warns: true,
   },
   over: {
@@ -62,7 +62,9 @@ function keyList(lines) {
 }
 
 export class Hud {
-  constructor() {
+  /** @param {Record<string, string>} [texts] words of a session for its participant */
+  constructor(texts) {
+    this.texts = texts;
     this.banner = byId("banner");
     this.notice = byId("notice");
     this.help = byId("help");
@@ -79,6 +81,7 @@ export class Hud {
   }
 
   toggleHelp() {
+    if (this.texts) return; // a participant is told what to press, and no more
     this.help.hidden = !this.help.hidden;
   }
 
@@ -95,16 +98,28 @@ export class Hud {
 
   /**
    * Show the message that belongs to a state of the trial or of the link.
-   * @param {{title: string, lines: string[], warns?: boolean}} state
+   * @param {{name: string, title: string, lines: string[], warns?: boolean}} state
    * @param {{text: string, can_resume: boolean}} [fault] what is wrong, if anything is
    */
-  state({ title, lines, warns = false }, fault) {
-    if (!title || !fault?.text) this.message(title, lines, warns);
+  state(state, fault) {
+    const { title, lines, warns = false } = state;
+    if (this.texts) this.tellParticipant(state, fault);
+    else if (!title || !fault?.text) this.message(title, lines, warns);
     else this.message(title, fault.can_resume ? [fault.text, ...lines] : [fault.text], true);
+  }
+
+  /** In the participant's language; what to mend is for the experimenter's console. */
+  tellParticipant({ name, title, warns = false }, fault) {
+    const words = (part) => this.texts[`drive_${name}_${part}`] ?? "";
+    const mayGoOn = !fault?.text || (fault.can_resume && name === "waiting");
+    if (!title) this.message(title);
+    else if (mayGoOn) this.message(words("title"), [words("text")].filter(Boolean), warns);
+    else this.message(words("title"), [this.texts.error_drive], true);
   }
 
   /** Show what the drive goes on without, as long as it does. */
   losses(texts) {
+    if (this.texts) return; // the console tells them
     this.lost.hidden = texts.length === 0;
     this.lost.replaceChildren(...texts.map((text) => make("li", {}, text)));
   }

@@ -15,11 +15,19 @@ async function ask(path, query) {
   return answer;
 }
 
+/** What the page of a session that holds this one as a frame says to its participant. */
+function sessionTexts() {
+  const { texts, lang } = globalThis.frameElement?.dataset ?? {};
+  if (!texts) return undefined;
+  document.documentElement.lang = lang;
+  return JSON.parse(texts);
+}
+
 async function start() {
   const options = readOptions(location.search);
   const query = credentials(location.search);
   const hello = await (await ask("api/hello", query)).json();
-  if (hello.mode !== "replay") return new Drive(hello, options, query);
+  if (hello.mode !== "replay") return new Drive(hello, options, query, sessionTexts());
   const record = await (await ask("api/record", query)).arrayBuffer();
   return new Replay(hello, record, options);
 }
@@ -27,6 +35,7 @@ async function start() {
 start().then(
   (page) => Object.defineProperty(globalThis, "costeer", { get: () => page.report }),
   (error) => {
+    globalThis.costeer = { state: "failed" };
     byId("counters").textContent = "";
     new Hud().message("The page could not start", [String(error.message ?? error)], true);
   },

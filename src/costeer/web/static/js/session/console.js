@@ -84,10 +84,12 @@ class Console {
 
   /** What is wrong with the session as a whole, as long as it is. */
   showBanners() {
-    const { trouble, step, disk } = this.state ?? {};
+    const { trouble, step, disk, stopped, participant, wording } = this.state ?? {};
     const texts = [
       this.isLost && "The server does not answer. Trying again; a drive pauses by itself.",
+      stopped && `${participant}: ${stopped}.`,
       trouble,
+      wording,
       step?.drive?.reason,
       ...(step?.drive?.losses ?? []),
       ...(step?.drive?.unkept ?? []),

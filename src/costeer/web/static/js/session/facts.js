@@ -9,11 +9,12 @@ const STILL = 2;
 /** Slower than this no time of arrival is told [m/s]. */
 const CRAWLING = 1;
 
-const KINDS = { ask: "QUESTIONS", consent: "CONSENT", instruct: "READS", break: "BREAK", done: "DONE" };
+const KINDS = { ask: "QUESTIONS", consent: "CONSENT", instruct: "READING", break: "BREAK", done: "DONE" };
 
 /** The state in a word, and how it looks. */
-export function shownState({ step }) {
+export function shownState({ step, stopped }) {
   if (!step) return ["NOBODY", "none"];
+  if (stopped) return ["STOPPED", "failed"];
   if (!step.drive) return [KINDS[step.kind] ?? step.kind.toUpperCase(), step.kind];
   const { state } = step.drive;
   return [state.toUpperCase(), state];
@@ -42,7 +43,7 @@ export function facts(state, signals, duration) {
   const way = step?.kind === "drive" && drive?.length ? ` of ${shownNumber(drive.length, 0)} m` : " m";
   return [
     { name: "elapsed", value: clock(seconds) },
-    { name: step?.kind === "practise" ? "until enough" : "remaining",
+    { name: step?.kind === "practise" ? "still to practise" : "remaining",
       value: clock(remaining(step, seconds, metres, signals.value("longitudinal_velocity"))) },
     { name: "driven", value: shownNumber(metres, 0), unit: Number.isFinite(metres) ? way : "" },
     recordFact(drive),
@@ -70,11 +71,11 @@ function recordFact(drive) {
 
 /** How it stands with the participant's page and the server. */
 function linkFact(state, drive, duration) {
-  const name = "page / server";
+  const name = "participant's page";
   if (!Number.isFinite(duration)) return { name, value: "no server", kind: "bad" };
   const isThere = state.page_seen !== null && state.page_seen < SILENCE;
   const needsPage = drive?.state === "running";
-  const page = drive?.has_page ? "drives" : isThere ? "here" : "none";
+  const page = drive?.has_page ? "drives" : isThere ? "open" : "not open";
   const isWell = needsPage ? drive.has_page : isThere;
   return { name, value: page, unit: `${shownNumber(duration, 0)} ms`, kind: isWell ? "good" : "bad" };
 }

@@ -35,10 +35,12 @@ export function renderForm(root, instrument, texts, onSubmit, look = {}) {
   const kept = draft.read();
   fields.forEach((field) => field.write(kept));
   let isSending = false;
+  let wrong = new Set();
 
   form.addEventListener("input", (event) => {
     const field = fields.find(({ element }) => element.contains(event.target));
     field?.mark("");
+    if (wrong.delete(field)) summarize();
     draft.keep(Object.assign({}, ...fields.map((each) => each.raw())));
   });
   form.addEventListener("submit", async (event) => {
@@ -70,18 +72,24 @@ export function renderForm(root, instrument, texts, onSubmit, look = {}) {
   /** Mark what is wrong, say how much it is, go to the first; whether anything is. */
   function tell(problems) {
     const byName = new Map(instrument.items.map((item) => [item.name, item]));
-    const wrong = fields.filter((field) => {
+    wrong = new Set(fields.filter((field) => {
       const name = field.names.find((each) => problems[each]);
       const text = name ? words(texts, `error_${problems[name]}`, byName.get(name)) : "";
       field.mark(text);
       return text;
-    });
+    }));
     if (!Object.keys(problems).length) return false;
-    const count = Math.max(wrong.length, 1);
-    alert.textContent = wrong.length === 0 ? words(texts, "error_unknown")
-      : words(texts, count === 1 ? "error_summary_one" : "error_summary", { count });
-    (wrong[0] ?? { focus: () => send.focus() }).focus();
+    summarize();
+    if (wrong.size === 0) alert.textContent = words(texts, "error_unknown");
+    ([...wrong][0] ?? send).focus();
     return true;
+  }
+
+  /** Say how many answers are still wrong. */
+  function summarize() {
+    const count = wrong.size;
+    alert.textContent = count === 0 ? ""
+      : words(texts, count === 1 ? "error_summary_one" : "error_summary", { count });
   }
 
   root.replaceChildren(form);

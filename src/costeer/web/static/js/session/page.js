@@ -8,6 +8,7 @@
 import { byId } from "../elements.js";
 import { DriveFrame } from "./drive_frame.js";
 import { ask, Follower } from "./server.js";
+import { Stopping } from "./stopping.js";
 import { viewOf } from "./views.js";
 import { words } from "./words.js";
 
@@ -15,6 +16,8 @@ import { words } from "./words.js";
 const OFTEN = 500;
 const SELDOM = 2000;
 const CHANGING = new Set(["practise", "drive", "break"]);
+/** What has no use for the button to stop. */
+const NO_WAY_OUT = new Set(["idle", "consent", "done", "frame", "stopped", "left"]);
 const OVER = new Set(["saving", "ended", "failed"]);
 
 class Page {
@@ -29,6 +32,7 @@ class Page {
     this.view = null;
     this.readyFor = "";
     this.isLost = false;
+    this.stopping = new Stopping((deletes) => this.stop(deletes));
     this.follower = new Follower(() => ask("api/session", this.query), {
       take: (state) => this.take(state),
       lost: () => this.lost(),
@@ -54,8 +58,9 @@ class Page {
 
   take(state) {
     this.isLost = false;
-    const isThanked = this.state?.step?.kind === "done" && !state.step;
-    this.state = isThanked ? { ...this.state, trouble: state.trouble } : state;
+    const before = this.state;
+    const isThanked = (before?.step?.kind === "done" || before?.stopped) && !state.step;
+    this.state = isThanked ? { ...before, trouble: state.trouble, isLeft: true } : state;
     this.show();
   }
 
@@ -69,18 +74,21 @@ class Page {
       this.enter(face);
     }
     this.view?.update?.(state);
-    this.frame.update(state, face === "frame");
+    const isNear = face === "brief" && state.step.drive.state === "ready" && !document.hidden;
+    this.frame.update(state, isNear, face === "frame");
+    this.stopping.show(state, NO_WAY_OUT.has(face));
     this.showHead();
     this.showBanner();
   }
 
   /** What of a step is shown: a drive has several faces. */
   face() {
-    const { step, participant } = this.state;
+    const { step, participant, stopped, isLeft } = this.state;
     if (!step) return "idle";
+    if (stopped) return isLeft ? "left" : "stopped";
     if (step.kind !== "practise" && step.kind !== "drive") return step.kind;
     const { state } = step.drive;
-    const me = `${participant}/${step.id}`;
+    const me = `${participant}/${step.id}/${step.attempt}`;
     if (OVER.has(state)) {
       this.readyFor = "";
       return "saving";
@@ -97,9 +105,11 @@ class Page {
     byId("said").textContent = "";
     root.setAttribute("aria-busy", "false");
     this.view = viewOf(face, root, state, {
-      next: () => this.send("api/session/next", { step: state.step.id }),
+      next: () => this.send("api/session/next", this.own({ step: state.step.id })),
       answer: (answers) => this.answer(state.step.id, answers),
       ready: () => this.ready(),
+      stop: (deletes) => this.stop(deletes).catch(() => {}),
+      resume: () => this.send("api/session/resume", this.own({})),
       say: (text) => {
         byId("said").textContent = text;
       },
@@ -107,10 +117,20 @@ class Page {
     scrollTo(0, 0);
   }
 
+  /** What is sent, with whose it is: another may sit here before it arrives. */
+  own(body) {
+    return { participant: this.state.participant, ...body };
+  }
+
+  /** Take no part any more; the experimenter is told at once. */
+  stop(deletes) {
+    return this.send("api/session/stop", this.own({ delete: deletes }));
+  }
+
   /** Send answers; those of a step that is over are answered by the step that is on. */
   async answer(step, answers) {
     try {
-      await this.send("api/session/answers", { step, answers });
+      await this.send("api/session/answers", this.own({ step, answers }));
     } catch (error) {
       if (error.answer?.state) return;
       if (error.answer) throw error;
@@ -119,7 +139,8 @@ class Page {
   }
 
   ready() {
-    this.readyFor = `${this.state.participant}/${this.state.step.id}`;
+    const { participant, step } = this.state;
+    this.readyFor = `${participant}/${step.id}/${step.attempt}`;
     this.show();
   }
 

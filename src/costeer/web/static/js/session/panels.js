@@ -112,7 +112,7 @@ export class Panels {
   }
 
   person({ participant, slot, status, reason, number, of }, isHere) {
-    const told = { active: `${number - 1} of ${of}`, finished: "finished" }[status] ?? status;
+    const told = { active: `step ${number} of ${of}`, finished: "finished" }[status] ?? status;
     const row = make("li", { class: isHere ? "here" : "", title: reason || `row ${slot} of the orders` },
       make("div", { class: "line" }, make("b", {}, participant),
         make("span", {}, isHere ? `here, ${told}` : told)));
@@ -120,8 +120,10 @@ export class Panels {
     const press = (label, act) => button(label, `${label} ${participant}`, act);
     const buttons = [];
     if (isHere) buttons.push(press("Leave", () => this.actions.tryTo(row, "leave")));
-    else if (status === "active") buttons.push(press("Go on", () => this.actions.tryTo(row, "begin", body)));
-    if (status === "active") buttons.push(press("Replace …", () => this.askReplace(participant)));
+    const hasStopped = status === "stopped" || status === "declined";
+    const mayGoOn = hasStopped || (status === "active" && !isHere);
+    if (mayGoOn) buttons.push(press("Go on", () => this.actions.tryTo(row, "begin", body)));
+    if (status === "active" || status === "stopped") buttons.push(press("Replace …", () => this.askReplace(participant)));
     buttons.push(press("Withdraw …", () => this.askWithdraw(participant)));
     row.append(make("div", { class: "row" }, ...buttons));
     return row;
@@ -178,7 +180,7 @@ function number(value, digits, factor = 1) {
 }
 
 function checkRows(checks) {
-  if (checks.length === 0) return [make("p", {}, "Not checked yet.")];
+  if (checks.length === 0) return [make("p", {}, "Press Check before the first participant.")];
   return [make("ul", {}, ...checks.map(({ name, well, told }) => make("li",
     { class: well ? "" : "wrong", title: told },
     make("b", { class: well ? "good" : "bad" }, well ? "✓" : "✗"), ` ${name}`,
@@ -192,7 +194,8 @@ function orderRows({ places, even }) {
   const heads = ["condition", ...names.map((_, n) => String(n + 1))];
   const body = names.map((name) => make("tr", {},
     ...[name, ...places[name].map(String)].map((text) => make("td", {}, text))));
-  const told = even ? "Even: each condition as often in each place." : "Not even yet.";
+  const told = even ? "Balanced: every condition has been in every place equally often."
+    : "Not balanced yet: how often each condition was the 1st, 2nd, … trial.";
   return [make("p", { class: even ? "good" : "" }, told), make("table", {},
     make("thead", {}, make("tr", {}, ...heads.map((text) => make("th", { scope: "col" }, text)))),
     make("tbody", {}, ...body))];

@@ -18,7 +18,7 @@ const CHARTS = [
     { column: "driver_torque", factor: 1, label: "driver" },
     { column: "applied_torque", factor: 1, label: "guidance" },
   ] },
-  { name: "gain", unit: "", digits: 2, limits: [-0.03, 1.03],
+  { name: "haptic gain", unit: "", digits: 2, limits: [-0.03, 1.03],
     signals: [{ column: "haptic_gain", factor: 1 }] },
   { name: "speed", unit: "km/h", digits: 0, around: 5,
     signals: [{ column: "longitudinal_velocity", factor: 3.6 }] },

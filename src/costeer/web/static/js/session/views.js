@@ -10,7 +10,8 @@ import { words } from "./words.js";
  * @param {string} face which of `VIEWS`
  * @param {HTMLElement} root its content is replaced
  * @param {object} state of the session
- * @param {{next: Function, answer: Function, ready: Function, say: Function}} does
+ * @param {{next: Function, answer: Function, ready: Function, stop: Function, resume: Function,
+ *   say: Function}} does
  * @returns {{update?: (state: object) => void}}
  */
 export function viewOf(face, root, state, does) {
@@ -22,6 +23,8 @@ const VIEWS = {
   wait: (root, { texts }) => card(root, texts.wait_title, [texts.wait_text]),
   saving: (root, { texts }) => card(root, texts.wait_title, [texts.drive_saving]),
   done: (root, { texts }) => card(root, texts.done_title, [texts.done_text]),
+  stopped,
+  left: (root, { texts }) => card(root, texts.withdrawn_title, [texts.withdrawn_text]),
   instruct,
   ask: (root, { step, texts }, does) => {
     renderQuestionnaire(root, step.instrument, texts, does.answer);
@@ -70,11 +73,13 @@ function instruct(root, state, does) {
 }
 
 function consent(root, state, does) {
-  const { step, texts } = state;
-  const back = () => consent(root, state, does);
-  const decline = () => card(root, texts.withdrawn_title, [texts.withdrawn_text],
-    make("button", { type: "button", onclick: back }, words(texts, "withdraw_cancel")));
-  renderConsent(root, step.instrument, texts, does.answer, decline);
+  renderConsent(root, state.step.instrument, state.texts, does.answer, () => does.stop(false));
+}
+
+/** Who has stopped may think better of it, as long as nobody else sits here. */
+function stopped(root, { texts }, does) {
+  card(root, texts.withdrawn_title, [texts.withdrawn_text],
+    once(words(texts, "withdraw_cancel"), does.resume));
 }
 
 function brief(root, state, does) {

@@ -1,0 +1,285 @@
+"""The file of a plan: read, and refused with its line where nobody could drive it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from importlib.resources import files
+from pathlib import Path
+from typing import Any
+
+from costeer.base.files import read_whole
+from costeer.base.nested import filled, parsed_mapping
+from costeer.loop.scenario import check_setup, loop_parameters
+from costeer.methods.conditions import CONDITION_NAMES
+from costeer.methods.conditions import condition as condition_named
+from costeer.runtime.setup import INTENTION_SOURCES
+from costeer.sessions.plan import (
+    KINDS,
+    ORDERS,
+    PLAN_FILE,
+    Plan,
+    PlanStep,
+    session_steps,
+    trial_of,
+)
+from costeer.sessions.questionnaires.instrument import load_instrument
+from costeer.sessions.questionnaires.texts import load_texts
+from costeer.study.design import MOST_CONDITIONS
+
+_OWN = {
+    "instruct": {"text"},
+    "consent": {"text", "instrument"},
+    "ask": {"text", "instrument"},
+    "practise": {
+        *("text", "condition", "method", "minutes", "longest_minutes", "sdlp_below"),
+    },
+    "drive": {"text", "condition", "method"},
+    "break": {"text", "minutes"},
+    "trials": {
+        *("text", "method", "minutes", "conditions", "order", "after", "break_every"),
+    },
+}
+"""Entries that mean something for a kind of step."""
+
+LONGEST_MINUTES = 120.0
+"""Of a practice or a break."""
+
+
+def paper_plan_text() -> str:
+    """The plan of the paper's experiment, as it is written into a new folder."""
+    return files("costeer.sessions").joinpath("paper.yaml").read_text("utf-8")
+
+
+def read_plan(path: Path) -> Plan:
+    """The plan of a file.
+
+    Raises:
+        ValueError: If it cannot be; with the line.
+        OSError: If it cannot be read.
+    """
+    return parsed_plan(read_whole(path), str(path))
+
+
+def parsed_plan(text: bytes | str, name: str = PLAN_FILE) -> Plan:
+    """The plan of a text.
+
+    Raises:
+        ValueError: If it cannot be.
+    """
+    given = parsed_mapping(text, name)
+    plan = filled(Plan, given, name)
+    _check_head(plan, name)
+    places = [f"{name}{_line(entry)}: step" for entry in given["steps"]]
+    wheres = [f"{place} {n}" for n, place in enumerate(places, start=1)]
+    for entry, where in zip(plan.steps, wheres, strict=True):
+        _check_step(entry, where)
+    _check_cells(plan, wheres)
+    _check_trials(plan, name)
+    return plan
+
+
+def kept_plan(text: str, name: str) -> Plan:
+    """A plan that somebody has begun with: read, and judged no more.
+
+    Raises:
+        ValueError: If it cannot be read.
+    """
+    return filled(Plan, parsed_mapping(text, name), name)
+
+
+def check_words(plan: Plan, folder: Path | None, language: str = "") -> None:
+    """Refuse a plan whose words or questionnaires are not there.
+
+    Args:
+        plan: Of the study.
+        folder: Of the study, which may bring its own; None before there is one.
+        language: Of a participant; the plan's if empty.
+
+    Raises:
+        ValueError: Naming what is missing.
+        OSError: If a file cannot be read.
+    """
+    chosen = language or plan.language
+    load_texts(chosen, folder)
+    for each in plan.steps:
+        for step in (each, *each.after):
+            if step.instrument:
+                load_instrument(step.instrument, chosen, folder)
+
+
+def _line(entry: Mapping[str, Any]) -> str:  # Any: as YAML gives it back
+    lines = getattr(entry, "lines", {}).values()
+    return f", line {min(lines)}" if lines else ""
+
+
+def _check_head(plan: Plan, name: str) -> None:
+    """Refuse what holds for the whole plan.
+
+    Raises:
+        ValueError: Naming the entry, the value and the way out.
+    """
+    if not plan.title.strip():
+        raise ValueError(f"{name}: title is empty; participants read it")
+    if not plan.steps:
+        raise ValueError(f"{name} has no steps; list them under steps:")
+    if not 1 <= plan.participants <= 1000:
+        raise ValueError(f"{name}: participants is {plan.participants}; give 1 to 1000")
+    if not 0 <= plan.seed < 2**31:
+        raise ValueError(f"{name}: seed is {plan.seed}; give 0 to {2**31 - 1}")
+    if plan.intention not in INTENTION_SOURCES:
+        raise ValueError(
+            f"{name}: intention '{plan.intention}' is not known; choose one of "
+            f"{', '.join(INTENTION_SOURCES)}"
+        )
+
+
+def _check_step(step: PlanStep, where: str, inner: bool = False) -> None:
+    """Refuse an entry that is not whole.
+
+    Raises:
+        ValueError: Naming it.
+    """
+    known = ("ask", "instruct") if inner else KINDS
+    if step.kind not in known:
+        raise ValueError(f"{where}: kind '{step.kind}' is none of {', '.join(known)}")
+    where = f"{where} ({step.kind})"
+    _check_own(step, where)
+    if step.kind in ("ask", "consent") and not step.instrument:
+        raise ValueError(f"{where} names no instrument, as instrument: nasa-tlx")
+    if step.kind == "instruct" and not step.text.strip():
+        raise ValueError(f"{where} has no text; give one, or a name of the text files")
+    if step.kind in ("practise", "drive"):
+        with _at(where):
+            condition_named(step.condition or "none")
+    if step.kind == "practise":
+        _check_practice(step, where)
+    if step.kind in ("break", "trials") and not _is_length(step.minutes):
+        raise ValueError(
+            f"{where}: minutes is {step.minutes:g}; give 0 to {LONGEST_MINUTES:g}"
+        )
+    if step.kind == "trials":
+        _check_block(step, where)
+
+
+def _check_own(step: PlanStep, where: str) -> None:
+    """Refuse an entry that would mean nothing here.
+
+    Raises:
+        ValueError: Naming it.
+    """
+    for field, usual in PlanStep._field_defaults.items():
+        value = getattr(step, field)
+        is_usual = value == usual or (value != value and usual != usual)  # NaN
+        if field not in _OWN[step.kind] and not is_usual:
+            raise ValueError(
+                f"{where}: {field} says nothing here; leave it out, or give one of "
+                f"{', '.join(sorted(_OWN[step.kind]))}"
+            )
+
+
+def _is_length(minutes: float) -> bool:
+    return math.isnan(minutes) or 0.0 <= minutes <= LONGEST_MINUTES
+
+
+def _check_practice(step: PlanStep, where: str) -> None:
+    """Refuse a practice that could not be passed.
+
+    Raises:
+        ValueError: Naming what is wrong.
+    """
+    if not 0.0 < step.minutes <= LONGEST_MINUTES:
+        raise ValueError(
+            f"{where}: minutes is {step.minutes:g}; give 0.1 to {LONGEST_MINUTES:g}"
+        )
+    if not step.minutes <= step.longest_minutes <= LONGEST_MINUTES:
+        raise ValueError(
+            f"{where}: longest_minutes is {step.longest_minutes:g}; give minutes "
+            f"({step.minutes:g}) to {LONGEST_MINUTES:g}"
+        )
+    if step.sdlp_below <= 0.0:
+        raise ValueError(
+            f"{where}: sdlp_below is {step.sdlp_below:g} m; nobody drives so straight, "
+            "give 0.3 or so, or leave it out"
+        )
+
+
+def _check_block(step: PlanStep, where: str) -> None:
+    """Refuse a block of trials that cannot be ordered.
+
+    Raises:
+        ValueError: Naming what is wrong.
+    """
+    with _at(where):
+        names = [condition_named(name).name for name in step.conditions]
+    if not names or len(set(names)) != len(names):
+        raise ValueError(
+            f"{where}: conditions are {list(step.conditions)}; name each once, of "
+            f"{', '.join(CONDITION_NAMES)}"
+        )
+    if step.order not in ORDERS:
+        raise ValueError(
+            f"{where}: order '{step.order}' is not known; choose one of "
+            f"{', '.join(ORDERS)}"
+        )
+    if step.order == "williams" and len(names) > MOST_CONDITIONS:
+        raise ValueError(
+            f"{where}: {len(names)} conditions; a balanced order has up to "
+            f"{MOST_CONDITIONS}"
+        )
+    if step.break_every < 0:
+        raise ValueError(f"{where}: break_every is {step.break_every}; give 0 or more")
+    for place, each in enumerate(step.after, start=1):
+        _check_step(each, f"{where}, after, entry {place}", inner=True)
+
+
+def _check_cells(plan: Plan, wheres: Sequence[str]) -> None:
+    """Refuse a condition that a participant would drive twice as a trial.
+
+    Tables and tests have one trial of each participant and condition.
+
+    Raises:
+        ValueError: Naming the second.
+    """
+    driven: dict[str, str] = {}
+    for each, where in zip(plan.steps, wheres, strict=True):
+        names = each.conditions if each.kind == "trials" else (each.condition,)
+        for name in names if each.kind in ("drive", "trials") else ():
+            if name in driven:
+                raise ValueError(
+                    f"{where} ({each.kind}): {name} is driven in {driven[name]} too; "
+                    "one trial of each condition counts, make the other one a practise"
+                )
+            driven[name] = where.rpartition(": ")[2]
+
+
+def _check_trials(plan: Plan, name: str) -> None:
+    """Refuse drives that cannot be.
+
+    Raises:
+        ValueError: Naming the value and the way out.
+    """
+    methods = set[str]()
+    for step in session_steps(plan, 1):
+        if not step.drives:
+            continue
+        trial = trial_of(plan, step, 1)
+        with _at(f"{name}: {step.id}"):
+            check_setup(trial)
+            if step.method not in methods:  # its parameters are the same
+                loop_parameters(trial)
+        methods.add(step.method)
+
+
+@contextmanager
+def _at(where: str) -> Iterator[None]:
+    """Say where in the file something is wrong.
+
+    Raises:
+        ValueError: As it is raised within, with the place before it.
+    """
+    try:
+        yield
+    except ValueError as error:
+        raise ValueError(f"{where}: {error}") from None

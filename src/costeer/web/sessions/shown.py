@@ -1,0 +1,91 @@
+"""A step as the participant's page takes it."""
+
+from __future__ import annotations
+
+import hashlib
+import time
+from typing import Any
+
+from costeer.sessions.plan import Step
+from costeer.sessions.questionnaires.instrument import Instrument, rendered
+from costeer.sessions.session import Session
+from costeer.sessions.standing import Standing
+from costeer.web.sessions.step_drive import StepDrive
+from costeer.web.sessions.wording import Wording
+
+# Any, in this file: of JSON.
+
+
+class ShownSteps:
+    """What is shown of steps.
+
+    Args:
+        session: Of the study.
+        wording: Its words.
+    """
+
+    def __init__(self, session: Session, wording: Wording) -> None:
+        self._session, self._wording = session, wording
+        self._break_began: dict[tuple[str, str], float] = {}
+
+    def shown(
+        self, standing: Standing, drive: StepDrive | None, attempt: int
+    ) -> dict[str, Any]:
+        """A step that is on.
+
+        Args:
+            standing: Of the participant.
+            drive: That is on; None without one.
+            attempt: Number of the drive among those of its step; 0 without one.
+        """
+        step, who = standing.step, standing.participant
+        shown: dict[str, Any] = {
+            "id": step.id,
+            "kind": step.kind,
+            **self._words(who, step),
+            "condition": step.condition,
+            "number": standing.number,
+            "of": standing.of,
+            "minutes": step.minutes,
+            "order": step.order,
+            "trials": sum(e.kind == "drive" for e in self._session.steps_of(who)),
+            "self_paced": self._session.plan_of(who).self_paced,
+        }
+        if step.kind in ("ask", "consent"):
+            shown["instrument"] = rendered(
+                self.instrument(who, step), self._seed(who, step)
+            )
+        if step.kind == "break":
+            shown["remaining"] = self.remaining(standing)
+        if step.drives:
+            shown["drive"] = {"state": "waiting"} if drive is None else drive.told()
+            shown["attempt"] = attempt
+            shown["enough"] = is_enough(step, drive)
+        return shown
+
+    def _words(self, who: str, step: Step) -> dict[str, str]:
+        """Heading and text of a step: of the text files, or the plan's own."""
+        pages = self._wording.pages(self._session.language_of(who))
+        text = pages.get(f"{step.text}_text", step.text)
+        return {"title": pages.get(f"{step.text}_title", ""), "text": text}
+
+    def instrument(self, who: str, step: Step) -> Instrument:
+        """Questionnaire of a step in a participant's language."""
+        return self._wording.instrument(step.instrument, self._session.language_of(who))
+
+    def _seed(self, who: str, step: Step) -> int:
+        """Of a questionnaire's random order: the same after a reload."""
+        told = f"{self._session.plan_of(who).seed} {who} {step.id}"
+        return int.from_bytes(hashlib.sha256(told.encode()).digest()[:7])
+
+    def remaining(self, standing: Standing) -> float:
+        """Of a break [s]."""
+        key = standing.participant, standing.step.id
+        began = self._break_began.setdefault(key, time.monotonic())
+        return max(0.0, round(60.0 * standing.step.minutes - time.monotonic() + began))
+
+
+def is_enough(step: Step, drive: StepDrive | None) -> bool:
+    """Whether a practice was long enough."""
+    seconds = 0.0 if drive is None else drive.seconds
+    return step.kind == "practise" and seconds >= 60.0 * step.minutes
