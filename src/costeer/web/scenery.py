@@ -15,7 +15,7 @@ from costeer.plant.fleet import KINDS as KIND_ROWS
 from costeer.plant.fleet import FleetParameters, num_cars
 from costeer.plant.parameters import CarParameters
 from costeer.plant.stretches import MOST_STRETCHES
-from costeer.scenarios.definition import EVENT_KINDS, KINDS, Scenario
+from costeer.scenarios.definition import EVENT_KINDS, KINDS, SIDES, Scenario
 from costeer.scenarios.reading import checked, speed_of
 from costeer.scenarios.world import Draw, world_of
 
@@ -29,18 +29,26 @@ def scenery_of(scenario: object) -> dict[str, object]:
 
     Returns:
         Name, shoulder [m], whether there is a rumble strip, speed limit as on a sign
-        ([number, unit] or null), stations [m, 1/m], and what happens on the way [m].
+        ([number, unit] or null), stations [m, 1/m], what happens from where to where
+        [m], and what follows a collision.
     """
     given = _mapping(scenario)
     road = _mapping(given.get("road"))
+    restarts = given.get("after_collision") == "restart"
     return {
         "name": str(given.get("name", ""))[:40],
         "shoulder": bounded(road.get("shoulder"), 2.5, 0.3, 50.0),
+        "after_collision": "restart" if restarts else "end",
         "rumble_strip": road.get("rumble_strip") is not False,
         "speed_limit": _sign(road.get("speed_limit")),
         "stations": _stations(road.get("stations")),
         "events": [
-            [str(each["kind"]), at, at + bounded(each.get("length"), 60.0, 1.0, 1e5)]
+            [
+                each["kind"],
+                at,
+                at + bounded(each.get("length"), 60.0, 1.0, 1e5),
+                side if (side := each.get("side")) in SIDES else "",
+            ]
             for each in _entries(given.get("events"))[:MOST_STRETCHES]
             if each.get("kind") in EVENT_KINDS
             and (at := bounded(each.get("at"), -1.0, 0.0, _LONGEST)) >= 0.0

@@ -6,12 +6,14 @@ import { now } from "./clock.js";
 import { Controls, isTyping } from "./controls.js";
 import { byId } from "./elements.js";
 import { Columns } from "./frames.js";
+import { Happenings } from "./happenings.js";
 import { Hud, LINK_STATES, refused, toggleFullScreen } from "./hud.js";
 import { StateBuffer } from "./interpolation.js";
 import { FrameCounter, Latency } from "./latency.js";
 import { Panel } from "./panel.js";
 import { Link, socketAddress } from "./protocol.js";
 import { View } from "./scene/view.js";
+import { Sound } from "./sound.js";
 import { Strip } from "./strip.js";
 
 /** Longest time between two inputs [s]: they tell the server that the page lives. */
@@ -38,7 +40,8 @@ export class Drive {
    */
   constructor(hello, options, query, texts) {
     this.hud = new Hud(texts);
-    this.view = new View(byId("view"), hello, options);
+    this.options = options;
+    this.happenings = new Happenings(this.hud, new Sound({ isMuted: options.isMuted }));
     this.strip = new Strip(byId("signals"));
     this.controls = new Controls();
     this.latency = new Latency();
@@ -87,6 +90,8 @@ export class Drive {
   /** Take over a hello: the first, and each one after a lost connection. */
   greet(hello) {
     this.hello = hello;
+    this.show(hello);
+    this.happenings.greet(hello);
     this.columns = new Columns(hello.columns, hello.stepped);
     this.runStates = byCode(hello.run_states);
     this.faults = byCode(hello.faults);
@@ -104,11 +109,21 @@ export class Drive {
     if (this.link) this.enterTrial();
   }
 
+  /** Draw the road of a hello; the next drive of a session may be on another one. */
+  show(hello) {
+    const road = JSON.stringify([hello.road, hello.scenario, hello.other_cars]);
+    if (road === this.road) return;
+    this.road = road;
+    this.view?.close();
+    this.view = new View(byId("view"), hello, this.options);
+  }
+
   /** Show where the trial stands, as the server told it last. */
   enterTrial() {
     if (this.isOver) return;
     const [state, fault] = this.stands;
-    this.enter(this.runStates.get(state), this.faults.get(fault));
+    const contact = this.lastFrame ? this.columns.finite(this.lastFrame, "contact") : 0;
+    this.enter(this.happenings.state(this.runStates.get(state), contact), this.faults.get(fault));
   }
 
   /** The socket has closed: the server has ended, let this page go, or is lost. */
@@ -148,7 +163,7 @@ export class Drive {
     else if (code === "KeyF") toggleFullScreen();
     else if (code === "KeyS") this.toggleStrip();
     else if (code === "KeyE") this.panel?.toggle();
-    else return false;
+    else return this.happenings.command(code, key);
     return true;
   }
 
@@ -255,7 +270,12 @@ export class Drive {
     this.drawn += 1;
     this.pictures.tick(time / 1000);
     const state = this.buffer.at(now());
-    if (state) this.view.update(this.columns, state);
+    if (state) {
+      this.view.update(this.columns, state);
+      this.happenings.see((name) => this.columns.finite(state, name), {
+        isRunning: this.state === "running", warns: this.stands[1] !== 0,
+      });
+    }
     this.view.render();
     this.strip.paint(time / 1000);
   }

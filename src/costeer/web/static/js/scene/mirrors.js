@@ -11,7 +11,7 @@ import {
 } from "../../vendor/three.module.js";
 import { aim } from "./axes.js";
 import { EYE_FORWARD, verticalEdges } from "./eye.js";
-import { drawnOut, coloured } from "./geometry.js";
+import { box, coloured, drawnOut } from "./geometry.js";
 
 /** Layer of the own car's body: only the door mirrors see it. */
 export const OWN_BODY = 1;
@@ -95,13 +95,23 @@ class Mirror {
     const mesh = new Group();
     const picture = workshop.plain(glass, { map: this.target.texture });
     this.target.texture.minFilter = LinearFilter;
-    mesh.add(shell, picture);
+    const arm = workshop.mesh(this.arm());
+    arm.position.z = -0.003;
+    mesh.add(arm, shell, picture);
     // In a narrow view they hang before the pillars, so nothing may hide them.
-    [shell, picture].forEach((part, order) => {
+    [arm, shell, picture].forEach((part, order) => {
       part.renderOrder = 10 + order;
       part.material.depthFunc = AlwaysDepth;
     });
     return mesh;
+  }
+
+  /** What bears it: the centre mirror hangs from the roof, the others stand at the doors. */
+  arm() {
+    const { seesBody, bearing } = this.plan;
+    if (!seesBody) return box([0.022, 0.3, 0.001], [0, this.height / 2 + 0.15, 0], "#1b1e21");
+    const towards = Math.sign(bearing) * (this.width / 2 + 0.03);
+    return box([0.09, 0.035, 0.001], [towards, -this.height * 0.36, 0], "#15181b");
   }
 
   /**

@@ -9,6 +9,7 @@ import {
   Color, CylinderGeometry, Group, InstancedMesh, Matrix4, MeshBasicMaterial, PlaneGeometry,
   Vector3,
 } from "../../vendor/three.module.js";
+import { isCalm } from "./dashboard.js";
 import { box, coloured, merged } from "./geometry.js";
 import { AHEAD, BARRIER_DEPTH, BEHIND, PERIOD } from "./layout.js";
 import { hash, stream } from "./random.js";
@@ -139,7 +140,7 @@ class Stretches {
     const wall = wallGeometry();
     this.walls = workshop.copies(wall, 40, { map: wallTexture(workshop.sharpness), side: 2 });
     this.group.add(...this.plants, this.walls);
-    this.density = workshop.low ? 0.4 : 1;
+    this.density = (workshop.low ? 0.4 : 1) * (isCalm ? 0.4 : 1);
     this.reach = workshop.low ? 800 : AHEAD;
     this.first = null;
   }

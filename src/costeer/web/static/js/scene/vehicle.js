@@ -4,6 +4,7 @@
 
 import { Group, Mesh, MeshBasicMaterial, PlaneGeometry } from "../../vendor/three.module.js";
 import { carParts } from "./car.js";
+import { isLit } from "./dashboard.js";
 import { hash } from "./random.js";
 import { shadowTexture } from "./textures.js";
 import { obstacleParts, truckParts } from "./truck.js";
@@ -21,9 +22,6 @@ const BRAKES_OFF = 0.3;
 /** Lateral speed of a car that changes lanes [m/s], and how long its indicator outlives it [s]. */
 const CHANGES = 0.25;
 const OUTLIVES = 0.5;
-
-/** Times per second that an indicator lights up. */
-const BLINKS = 1.5;
 
 const LAMPS = {
   brakeOff: "#7a1016", brakeOn: "#ff2a22", indicatorOff: "#6b4a1c", indicatorOn: "#ffb01f",
@@ -101,10 +99,10 @@ export class Vehicle {
     if (!this.brakes) return;
     this.watch(lateral, velocity, time);
     const { brakeOn, brakeOff, indicatorOn, indicatorOff } = this.lamps;
-    const isLit = (time * BLINKS) % 1 < 0.55;
+    const lit = isLit(time);
     this.brakes.material = this.isBraking ? brakeOn : brakeOff;
-    this.left.material = isLit && this.side > 0 ? indicatorOn : indicatorOff;
-    this.right.material = isLit && this.side < 0 ? indicatorOn : indicatorOff;
+    this.left.material = lit && this.side > 0 ? indicatorOn : indicatorOff;
+    this.right.material = lit && this.side < 0 ? indicatorOn : indicatorOff;
   }
 
   /** Tell from its motion whether it brakes and changes lanes. */

@@ -51,8 +51,17 @@ export class View {
     this.setUpCockpit(workshop);
     if (!options.low) this.reflectSky();
     this.setUpScreens(inner);
-    new ResizeObserver(() => this.resize()).observe(parent);
+    this.observer = new ResizeObserver(() => this.resize());
+    this.observer.observe(parent);
     this.resize();
+  }
+
+  /** Make room for another view. */
+  close() {
+    this.observer.disconnect();
+    this.renderer.domElement.remove();
+    this.renderer.dispose();
+    this.renderer.forceContextLoss();
   }
 
   setUpCockpit(workshop) {
