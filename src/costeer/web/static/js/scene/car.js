@@ -39,8 +39,8 @@ function halfCabin(z) {
 const CABIN = [[-1.92, 0.94], [-1.12, 1.39], [-0.85, 1.445], [0.1, 1.455], [0.4, 1.41], [1.22, 0.93]];
 
 /** The cabin, leaning in. */
-function cabin(colour) {
-  const geometry = drawnOut(outline(CABIN), 1.63, 0.05);
+function cabin(colour, coarse) {
+  const geometry = drawnOut(outline(CABIN), 1.63, 0.05, coarse);
   const { position } = geometry.attributes;
   for (let n = 0; n < position.count; n++) {
     position.setY(n, (position.getY(n) * halfCabin(position.getZ(n))) / halfCabin(0.94));
@@ -69,9 +69,9 @@ function sideWindows(side) {
   });
 }
 
-function wheel(x, side) {
+function wheel(x, side, coarse) {
   const turn = (radius, width, y, colour) =>
-    coloured(new CylinderGeometry(radius, radius, width, 24).translate(x, side * y, WHEEL_RADIUS), colour);
+    coloured(new CylinderGeometry(radius, radius, width, coarse ? 12 : 24).translate(x, side * y, WHEEL_RADIUS), colour);
   return [turn(WHEEL_RADIUS, 0.2, 0.775, BLACK), turn(0.21, 0.02, 0.87, "#aeb4b8")];
 }
 
@@ -125,7 +125,7 @@ function details(colour) {
 function distant(colour) {
   const side = [[-2.2, 0.28], [-2.2, 0.95], [0.95, 0.95], [2.1, 0.66], [2.2, 0.28]];
   return merged([
-    coloured(drawnOut(outline(side), WIDTH), colour), cabin(colour),
+    coloured(drawnOut(outline(side), WIDTH), colour), cabin(colour, true),
     box([4.0, 1.6, 0.3], [0, 0, 0.2], BLACK),
   ]);
 }
@@ -151,11 +151,12 @@ function plate(workshop) {
  * @param {import("./workshop.js").Workshop} workshop
  */
 export function carParts(workshop, colour) {
-  const body = coloured(drawnOut(bodyShape(), WIDTH, 0.09), colour);
-  const paint = merged([body, cabin(colour), ...details(colour)]);
-  const wheels = merged(WHEEL_PLACES.flatMap((x) => [...wheel(x, 1), ...wheel(x, -1)]));
+  const { low } = workshop;
+  const body = coloured(drawnOut(bodyShape(), WIDTH, 0.09, low), colour);
+  const paint = merged([body, cabin(colour, low), ...details(colour)]);
+  const wheels = merged(WHEEL_PLACES.flatMap((x) => [...wheel(x, 1, low), ...wheel(x, -1, low)]));
   // What is lit alike is drawn at once.
-  const near = workshop.low
+  const near = low
     ? [workshop.mesh(merged([paint, windows(), wheels])), plate(workshop)]
     : [
       workshop.glossy(paint), workshop.glossy(windows(), { roughness: 0.12 }),

@@ -54,15 +54,16 @@ function smoothNormals(geometry, normalAt) {
 }
 
 /** The wheel in its own plane: x to the driver's right, y up, z to the driver. */
-function wheelParts() {
+function wheelParts(low) {
   const { radius } = WHEEL;
-  const rim = coloured(new TorusGeometry(radius, 0.0145, 18, 80), "#24282b");
+  const [tube, around] = low ? [9, 44] : [18, 80];
+  const rim = coloured(new TorusGeometry(radius, 0.0145, tube, around), "#24282b");
   // Leather of another kind where the hands are.
   const grips = [0, Math.PI].map((angle) => {
-    const grip = new TorusGeometry(radius, 0.0158, 18, 18, 1.0);
+    const grip = new TorusGeometry(radius, 0.0158, tube, 12, 1.0);
     return coloured(grip.applyMatrix4(new Matrix4().makeRotationZ(angle - 0.35)), "#2f3438");
   });
-  const mark = new TorusGeometry(radius, 0.0153, 18, 6, 0.12);
+  const mark = new TorusGeometry(radius, 0.0168, tube, 4, 0.12);
   mark.applyMatrix4(new Matrix4().makeRotationZ(Math.PI / 2 - 0.06));
   const hub = new CylinderGeometry(0.043, 0.052, 0.04, 40);
   hub.applyMatrix4(new Matrix4().makeRotationX(Math.PI / 2));
@@ -102,7 +103,7 @@ export class Cockpit {
     this.dashboard = new Dashboard(workshop.low);
     const face = facing(this.dashboard.mesh(workshop, FACE.width), FACE.lean);
     face.position.set(FACE.x, 0, FACE.z);
-    this.wheel = workshop.mesh(merged(wheelParts()), { side: DoubleSide });
+    this.wheel = workshop.mesh(merged(wheelParts(workshop.low)), { side: DoubleSide });
     const plane = facing(new Group(), WHEEL.lean);
     plane.position.set(WHEEL.x, 0, WHEEL.z);
     plane.add(this.wheel);

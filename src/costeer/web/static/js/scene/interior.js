@@ -7,8 +7,8 @@
 import { CylinderGeometry, Matrix4, Shape, Vector3 } from "../../vendor/three.module.js";
 import { box, coloured, drawnOut, merged, outline, quad } from "./geometry.js";
 
-const SOFT = "#33383d";
-const HARD = "#24282c";
+const SOFT = "#454a4f";
+const HARD = "#33373b";
 const DARK = "#16191c";
 const LINING = "#7d7b75";
 const SHADE = "#5e5c57";
@@ -53,11 +53,11 @@ function turned(face) {
 /** Board below the windscreen, from door to door: a soft pad above, hard below. */
 function board(middle) {
   const pad = [
-    [0.94, -0.42], [0.925, -0.345], [0.95, -0.312], [1.02, -0.298], [1.3, -0.29], [1.5, -0.3], [1.5, -0.42],
+    [0.94, -0.45], [0.925, -0.385], [0.95, -0.352], [1.02, -0.34], [1.3, -0.336], [1.36, -0.35], [1.36, -0.45],
   ];
-  const below = [[0.99, -0.8], [0.955, -0.52], [0.965, -0.415], [1.5, -0.415], [1.5, -0.8]];
+  const below = [[0.99, -0.8], [0.955, -0.55], [0.965, -0.445], [1.36, -0.445], [1.36, -0.8]];
   const across = (side, colour) => coloured(drawnOut(outline(side), 1.62, 0.01), colour).translate(0, middle, 0);
-  return [across(pad, SOFT), across(below, HARD), box([0.012, 1.5, 0.012], [0.945, middle, -0.405], "#8a9299")];
+  return [across(pad, SOFT), across(below, HARD), box([0.012, 1.5, 0.012], [0.945, middle, -0.435], "#8a9299")];
 }
 
 /** Hood over the instruments, rounded, open to the driver. */
@@ -78,18 +78,18 @@ function binnacle() {
 
 /** A vent: a frame with slats. */
 function vent(y) {
-  const slats = [-0.024, -0.008, 0.008, 0.024].map((z) => box([0.008, 0.13, 0.004], [0.926, y, -0.37 + z], "#3d4348"));
-  return [box([0.02, 0.15, 0.078], [0.935, y, -0.37], "#0c0e10"), ...slats];
+  const slats = [-0.024, -0.008, 0.008, 0.024].map((z) => box([0.008, 0.13, 0.004], [0.926, y, -0.405 + z], "#3d4348"));
+  return [box([0.02, 0.15, 0.078], [0.935, y, -0.405], "#0c0e10"), ...slats];
 }
 
 /** Vents, the screen of the radio, a line of buttons. */
 function consoleParts(middle, inner) {
   const buttons = [-2, -1, 0, 1, 2].map((n) =>
-    box([0.012, 0.03, 0.014], [0.948, middle + n * 0.042, -0.48], "#454b50"));
+    box([0.012, 0.03, 0.014], [0.948, middle + n * 0.042, -0.51], "#454b50"));
   return [
     ...vent(middle + 0.13), ...vent(middle - 0.13), ...vent(middle + inner * 0.68), ...vent(-inner * 0.3),
-    box([0.015, 0.27, 0.15], [0.925, middle, -0.25], DARK),
-    box([0.004, 0.245, 0.128], [0.916, middle, -0.25], "#10202b"), ...buttons,
+    box([0.015, 0.25, 0.13], [0.925, middle, -0.285], DARK),
+    box([0.004, 0.232, 0.112], [0.916, middle, -0.285], "#1b3040"), ...buttons,
   ];
 }
 
@@ -118,9 +118,9 @@ function frameParts(middle) {
     sheet(raised(edge, -0.03, 0.028), edge.map(([, y]) => [-0.9, y, 0.27]), LINING),
   ];
   for (const side of [1, -1]) {
-    const foot = [1.27, middle + side * FOOT, -0.32];
+    const foot = [1.27, middle + side * FOOT, -0.36];
     const head = [0.55, middle + side * HEAD, 0.22];
-    parts.push(beam(foot, head, [0.05, 0.075], HARD), ...door(middle, side));
+    parts.push(beam(foot, head, [0.045, 0.06], SOFT), ...door(middle, side));
     // The frame of the side window, back to the pillar behind the driver.
     parts.push(beam(head, [-0.45, middle + side * (HEAD - 0.02), 0.26], [0.05, 0.05], HARD));
     parts.push(beam([-0.45, middle + side * SILL, -0.36], [-0.5, middle + side * HEAD, 0.28], [0.05, 0.1], HARD));
@@ -144,9 +144,9 @@ function door(middle, side) {
 /** Wipers at rest, and the black edge of the windscreen. */
 function cowl(middle) {
   return [
-    box([0.07, 1.5, 0.01], [1.5, middle, -0.296], "#0b0c0d"),
-    beam([1.47, middle + 0.62, -0.287], [1.43, middle + 0.02, -0.281], [0.012, 0.012], "#0b0c0d"),
-    beam([1.47, middle - 0.02, -0.287], [1.43, middle - 0.62, -0.281], [0.012, 0.012], "#0b0c0d"),
+    box([0.05, 1.5, 0.01], [1.375, middle, -0.335], "#0b0c0d"),
+    beam([1.39, middle + 0.6, -0.318], [1.4, middle + 0.02, -0.302], [0.01, 0.01], "#0b0c0d"),
+    beam([1.39, middle - 0.02, -0.318], [1.4, middle - 0.6, -0.302], [0.01, 0.01], "#0b0c0d"),
   ];
 }
 

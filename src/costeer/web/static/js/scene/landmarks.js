@@ -115,7 +115,7 @@ function limitSigns(workshop, course, layout, limit) {
 export function buildLandmarks(workshop, course, layout, limit) {
   const group = new Group();
   const limits = limitSigns(workshop, course, layout, limit);
-  group.add(...limits.signs);
+  for (const sign of limits.signs) group.add(sign);
   const plates = Array.from({ length: PLATES }, () => new Plate(workshop));
   const bridges = [0, 1].map(() => workshop.mesh(bridge(layout)));
   group.add(...plates.map((plate) => plate.group), ...bridges);

@@ -65,7 +65,7 @@ function rails(workshop, layout) {
 
 /** Reflector posts every 50 m: white at the outer side, orange at the median. */
 function reflectors(workshop, layout) {
-  const disc = new CylinderGeometry(0.055, 0.055, 0.02, 12).applyMatrix4(
+  const disc = new CylinderGeometry(0.055, 0.055, 0.02, workshop.low ? 5 : 12).applyMatrix4(
     new Matrix4().makeRotationZ(Math.PI / 2),
   );
   const post = (colour) => {

@@ -14,7 +14,7 @@ const AXLES = [4.4, -2.6, -3.9];
 function wheels() {
   return AXLES.flatMap((x) => [1, -1].flatMap((side) => {
     const turn = (radius, width, y, colour) => coloured(
-      new CylinderGeometry(radius, radius, width, 20).translate(x, side * y, 0.5), colour,
+      new CylinderGeometry(radius, radius, width, 14).translate(x, side * y, 0.5), colour,
     );
     return [turn(0.5, 0.36, 1.04, BLACK), turn(0.3, 0.02, 1.23, "#a7adb0")];
   }));

@@ -43,7 +43,7 @@ export class World {
     this.traffic = new Traffic(workshop, this.layout, hello);
     /** The own car; cameras and mirrors hang on it. */
     this.car = new Group();
-    const body = carParts(workshop, colour).near;
+    const body = carParts(workshop, colour)[workshop.low ? "far" : "near"];
     for (const part of body) part.layers.set(OWN_BODY);
     this.car.add(...body);
     axes.add(
