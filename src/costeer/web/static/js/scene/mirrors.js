@@ -7,7 +7,7 @@
 
 import {
   AlwaysDepth, Group, HalfFloatType, LinearFilter, Matrix4, PerspectiveCamera, PlaneGeometry, Shape, Vector3,
-  WebGLRenderTarget,
+  UnsignedByteType, WebGLRenderTarget,
 } from "../../vendor/three.module.js";
 import { aim } from "./axes.js";
 import { EYE_FORWARD, verticalEdges } from "./eye.js";
@@ -70,7 +70,7 @@ class Mirror {
     this.height = 2 * Math.tan((plan.height * RADIAN) / 2);
     const aspect = this.width / this.height;
     this.target = new WebGLRenderTarget(pixels, Math.round(pixels / aspect), {
-      type: HalfFloatType, minFilter: LinearFilter, samples: workshop.low ? 0 : 4,
+      type: workshop.low ? UnsignedByteType : HalfFloatType, minFilter: LinearFilter, samples: workshop.low ? 0 : 4,
     });
     const tall = (2 * Math.atan(Math.tan((plan.fov * RADIAN) / 2) / aspect)) / RADIAN;
     this.camera = new PerspectiveCamera(tall, aspect, 0.5, 4500);
@@ -170,8 +170,10 @@ export class Mirrors {
 
   /** Draw what the mirrors show: all of them, in low quality one at a time. */
   render(renderer, scene) {
-    const all = this.isLow ? this.all.slice(this.turn, this.turn + 1) : this.all;
-    this.turn = (this.turn + 1) % Math.max(1, this.all.length);
+    // The centre mirror every second time, those at the doors in turn.
+    const next = this.turn % 2 === 0 ? 0 : 1 + (((this.turn - 1) / 2) % Math.max(1, this.all.length - 1));
+    this.turn += 1;
+    const all = this.isLow ? this.all.slice(next, next + 1) : this.all;
     for (const mirror of all) {
       renderer.setRenderTarget(mirror.target);
       renderer.clear();

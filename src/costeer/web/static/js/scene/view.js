@@ -10,6 +10,8 @@ import {
 } from "./eye.js";
 import { Mirrors } from "./mirrors.js";
 import { HAZE, buildSky } from "./sky.js";
+import { Pace } from "./pace.js";
+import { Smoothing } from "./smoothing.js";
 import { Workshop } from "./workshop.js";
 import { World } from "./world.js";
 
@@ -23,6 +25,9 @@ const USUAL_ASPECT = 16 / 9;
 
 /** Part of the depth buffer that the cockpit takes [-]. */
 const NEAR_DEPTH = 0.05;
+
+/** What a graphics card draws of every picture. */
+const FULL = { mirrorsEvery: 1, isSmooth: true };
 
 /** Most pixels that are drawn in low quality; the browser enlarges the picture. */
 const MOST_PIXELS = 640 * 360;
@@ -49,6 +54,9 @@ export class View {
     this.cockpit = new Cockpit(workshop, inner, OWN_COLOUR);
     this.mirrors = new Mirrors(workshop, options.mirrors, inner);
     this.setUpCockpit(workshop);
+    this.smoothing = options.low ? new Smoothing() : null;
+    this.pace = options.low ? new Pace() : null;
+    this.drawn = 0;
     if (!options.low) this.reflectSky();
     this.setUpScreens(inner);
     this.observer = new ResizeObserver(() => this.resize());
@@ -148,7 +156,8 @@ export class View {
     const { renderer } = this;
     const context = renderer.getContext();
     context.depthRange(0, 1);
-    this.mirrors.render(renderer, this.world.scene);
+    const { mirrorsEvery, isSmooth } = this.pace?.tick(performance.now() / 1000) ?? FULL;
+    if (this.drawn++ % mirrorsEvery === 0) this.mirrors.render(renderer, this.world.scene);
     const width = this.size.width / this.screens.length;
     renderer.setScissorTest(this.screens.length > 1);
     this.screens.forEach(({ outside, inside }, n) => {
@@ -160,5 +169,7 @@ export class View {
       context.depthRange(NEAR_DEPTH, 1);
       renderer.render(this.world.scene, outside);
     });
+    context.depthRange(0, 1);
+    if (isSmooth) this.smoothing?.apply(renderer, this.size);
   }
 }
