@@ -18,8 +18,7 @@ import { Strip } from "./strip.js";
 
 /** Longest time between two inputs [s]: they tell the server that the page lives. */
 const HEARTBEAT = 0.09;
-const PING_SPACING = 500;
-const SECOND = 1000;
+const [PING_SPACING, SECOND] = [500, 1000];
 /** Silence of an open socket after which the page says so [s]. */
 const SILENCE = 2;
 /** Code with which the server closes a socket that it does not want. */
@@ -122,8 +121,8 @@ export class Drive {
   enterTrial() {
     if (this.isOver) return;
     const [state, fault] = this.stands;
-    const contact = this.lastFrame ? this.columns.finite(this.lastFrame, "contact") : 0;
-    this.enter(this.happenings.state(this.runStates.get(state), contact), this.faults.get(fault));
+    const shown = this.happenings.state(this.runStates.get(state), this.lastValue("contact"));
+    this.enter(shown, this.faults.get(fault));
   }
 
   /** The socket has closed: the server has ended, let this page go, or is lost. */
@@ -171,10 +170,13 @@ export class Drive {
     if (this.goesOnBy) this.link?.send({ type: this.goesOnBy });
   }
 
+  lastValue(name) {
+    return this.lastFrame ? this.columns.finite(this.lastFrame, name) : 0;
+  }
+
   /** The same side again switches the indicator off. */
   indicate(side) {
-    const current = this.lastFrame ? this.columns.finite(this.lastFrame, "indicator") : 0;
-    this.link?.send({ type: "indicator", side: current === side ? 0 : side });
+    this.link?.send({ type: "indicator", side: this.lastValue("indicator") === side ? 0 : side });
   }
 
   toggleStrip() {
@@ -204,8 +206,7 @@ export class Drive {
       this.lastFrame = frame;
     }
     if (!this.lastFrame) return;
-    const code = (name) => this.columns.finite(this.lastFrame, name);
-    this.stands = [code("run_state"), code("fault")];
+    this.stands = [this.lastValue("run_state"), this.lastValue("fault")];
     this.enterTrial();
   }
 
@@ -254,14 +255,10 @@ export class Drive {
   }
 
   figures() {
-    const value = (name) => (this.lastFrame ? this.columns.value(this.lastFrame, name) : Number.NaN);
-    return {
-      fps: this.pictures.fps,
-      frameRate: this.states.fps,
-      latency: this.latency.summary(),
-      lateness: value("lateness"),
-      computeTime: value("compute_time"),
-    };
+    const { lateness, compute_time: computeTime } = this.lastFrame
+      ? this.columns.named(this.lastFrame) : { lateness: Number.NaN, compute_time: Number.NaN };
+    const latency = this.latency.summary();
+    return { fps: this.pictures.fps, frameRate: this.states.fps, latency, lateness, computeTime };
   }
 
   draw(time) {
@@ -272,9 +269,8 @@ export class Drive {
     const state = this.buffer.at(now());
     if (state) {
       this.view.update(this.columns, state);
-      this.happenings.see((name) => this.columns.finite(state, name), {
-        isRunning: this.state === "running", warns: this.stands[1] !== 0,
-      });
+      const [isRunning, warns] = [this.state === "running", this.stands[1] !== 0];
+      this.happenings.see((name) => this.columns.finite(state, name), { isRunning, warns });
     }
     this.view.render();
     this.strip.paint(time / 1000);
