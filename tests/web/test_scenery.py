@@ -89,4 +89,3 @@ def test_record_from_anywhere_shows_a_usual_road(scenario: object) -> None:
     assert (found["stations"], found["events"], found["zones"]) == ([], [], [])
     about = {"scenario": scenario, "configuration": {"setup": {"seed": 1}}}
     assert cars_of_record(about, 1000.0) == []
-

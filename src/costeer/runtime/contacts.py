@@ -8,6 +8,8 @@ from collections.abc import Callable
 from costeer.runtime.markers import Marker
 from costeer.runtime.states import Contact
 
+_BY_NUMBER = {int(each): each for each in Contact}
+
 SHOWN_FOR = 3.0
 """Before a drive begins anew its end is on show for so long [s]."""
 
@@ -37,7 +39,7 @@ class Contacts:
             contact: Of the newest row, a number of `Contact`.
             now: Of the clock [s].
         """
-        before, self._before = self._before, Contact(int(contact))
+        before, self._before = self._before, _BY_NUMBER[int(contact)]
         if self._before in (before, Contact.NOTHING):
             return False
         self._mark(Marker("contact", self._before.word))

@@ -1,4 +1,4 @@
-"""The indicator: set from a page or by the wheel's paddles, off after the lane change."""
+"""The indicator: set by a page or the wheel's paddles, off after the lane change."""
 
 from __future__ import annotations
 

@@ -37,6 +37,7 @@ from costeer.runtime.setup import (
     offered_methods,
 )
 from costeer.runtime.states import Fault, RunState, page_tables
+from costeer.scenarios.reading import scenario_named
 from costeer.web.messages import (
     Indicator,
     Input,
@@ -51,7 +52,6 @@ from costeer.web.messages import (
     marker_shown,
     told_of,
 )
-from costeer.scenarios.reading import scenario_named
 from costeer.web.scenery import cars_of, scenery_of
 from costeer.web.session import Broadcast, Role
 

@@ -88,7 +88,10 @@ def _sign(limit: object) -> list[object] | None:
     if not 1.0 <= speed <= 100.0:
         return None
     in_miles = "mph" in str(limit)
-    return [round(speed / (0.44704 if in_miles else 1 / 3.6)), "mph" if in_miles else ""]
+    return [
+        round(speed / (0.44704 if in_miles else 1 / 3.6)),
+        "mph" if in_miles else "",
+    ]
 
 
 def _stations(value: object) -> list[list[float]]:

@@ -100,9 +100,8 @@ def test_brake_lamps_and_indicators_tell_what_a_car_does(page: Page) -> None:
           const { Workshop } = await import("/js/scene/workshop.js");
           const { Course } = await import("/js/scene/course.js");
           const { Alignment } = await import("/js/scene/alignment.js");
-          const [car, course] = [
-            new Vehicle(new Workshop(true, 1), ["truck", 12, 2.5], 1), new Course(new Alignment()),
-          ];
+          const course = new Course(new Alignment());
+          const car = new Vehicle(new Workshop(true, 1), ["truck", 12, 2.5], 1);
           const told = [];
           for (let n = 0; n <= 30; n++) {
             const [time, turns] = [0.2 * n, Math.max(0, n - 15)];
@@ -129,7 +128,10 @@ class Parameter {
   exponentialRampToValueAtTime(value) {}
 }
 class Node {
-  constructor(kind) { [this.kind, this.frequency, this.gain] = [kind, new Parameter(), new Parameter()]; }
+  constructor(kind) {
+    this.kind = kind;
+    [this.frequency, this.gain] = [new Parameter(), new Parameter()];
+  }
   connect() {}
   start() { Fake.started.push(this); }
   stop() {}
@@ -154,7 +156,8 @@ def heard(page: Page, script: str, lacks: str = "false") -> Any:
           {FAKE}
           localStorage.clear();
           const {{ Sound }} = await import("/js/sound.js");
-          const sound = new Sound({{ make: () => new Fake(), lacks: async () => {lacks} }});
+          const make = () => new Fake();
+          const sound = new Sound({{ make, lacks: async () => {lacks} }});
           const still = {{ speed: 0, accelerator: 0, contact: 0, indicator: 0,
             isRunning: true, warns: false, time: 0 }};
           const level = (name) => sound.graph.level(name).gain.value;
@@ -198,7 +201,9 @@ def test_indicator_ticks_a_hit_thumps_and_mute_is_kept(page: Page) -> None:
         page,
         """const count = () => Fake.started.length;
         let before = count();
-        for (let n = 0; n < 60; n++) sound.update({ ...still, indicator: 1, time: n / 30 });
+        for (let n = 0; n < 60; n++) {
+          sound.update({ ...still, indicator: 1, time: n / 30 });
+        }
         const ticks = count() - before;
         sound.update({ ...still, time: 3 });
         before = count();
@@ -206,8 +211,8 @@ def test_indicator_ticks_a_hit_thumps_and_mute_is_kept(page: Page) -> None:
         const thumps = count() - before;
         sound.change(1);
         sound.toggle();
-        const again = new Sound({ make: () => new Fake(), lacks: async () => false });
-        return [ticks, thumps, sound.graph.master.gain.value, [again.isMuted, again.volume]];""",
+        const [again, master] = [new Sound({ make }), sound.graph.master];
+        return [ticks, thumps, master.gain.value, [again.isMuted, again.volume]];""",
     )
     assert ticks == 6  # on and off, 1.5 times a second, in 2 s
     assert thumps == 2
