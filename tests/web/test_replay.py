@@ -104,6 +104,7 @@ def test_the_page_is_told_what_jumps_between_two_samples(replay: Replay) -> None
         "lead_lane",
         "head_yaw_valid",
         "torque_fault",
+        "contact",
     ]
 
 

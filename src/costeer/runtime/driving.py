@@ -13,17 +13,16 @@ from collections.abc import Callable
 from contextlib import suppress
 from typing import Any
 
-import numpy as np
-
 from costeer.devices.head.source import STALE_AFTER
 from costeer.devices.wheels.interface import EFFECT_LIFE, WheelLost
 from costeer.devices.wheels.registry import open_wheel
-from costeer.plant.road import adjacent_side
+from costeer.plant.road import adjacent_side, lane_centre
 from costeer.records.row import ROW_COLUMNS
 from costeer.runtime.bay import Bay, Opener
 from costeer.runtime.cabin import Cabin, Controls
 from costeer.runtime.choices import Choices
-from costeer.runtime.frame import FRAME, WIDTH, absent
+from costeer.runtime.contacts import Contacts
+from costeer.runtime.frame import FrameRow
 from costeer.runtime.indicator import Indicator
 from costeer.runtime.links import Links
 from costeer.runtime.markers import Kind, Marker
@@ -44,17 +43,15 @@ from costeer.runtime.shared import Shared, next_rows
 from costeer.runtime.states import Fault, RunState
 from costeer.runtime.trace import Tracer
 from costeer.runtime.watchdog import stands_still
+from costeer.scenarios.reading import scenario_named
 
 NEVER = math.inf
-_LANE, _POSITION, _TIME, _ANGLE, _APPEARED = (
-    ROW_COLUMNS.index(name)
-    for name in (
-        "lane",
-        "longitudinal_position",
-        "time",
-        "steering_wheel_angle",
-        "event",
-    )
+_LANE, _POSITION, _LATERAL, _YAW = map(
+    ROW_COLUMNS.index,
+    ("lane", "longitudinal_position", "lateral_position", "yaw_angle"),
+)
+_TIME, _ANGLE, _APPEARED, _CONTACT = map(
+    ROW_COLUMNS.index, ("time", "steering_wheel_angle", "event", "contact")
 )
 
 
@@ -92,10 +89,11 @@ class Driving:
         self._stepped_at = NEVER
         self._road = drive_parameters(setup).road
         self._draws = leader_draws(setup)
-        self._frame = np.full(WIDTH, np.nan)
-        self._own = np.array([absent(c) for c in drive_columns(setup)])
+        self._frame = FrameRow(drive_columns(setup))
         self._choices = Choices(self._cabin, setup, self._mark)
         self._indicator = Indicator(self._mark)
+        after = scenario_named(setup.trial.scenario).after_collision
+        self._contacts = Contacts(after, self._mark)
         self.stopping = self.is_told_to_end = False
         self._stop_at = NEVER
         self._run_state, self._fault = RunState.WAITING, Fault.NONE
@@ -145,12 +143,9 @@ class Driving:
         self._look_around(start)
         if self._run_state == RunState.RUNNING:
             self._applied = self._mailbox.get("input_sequence")
-            row = self._cabin.control(self._controls(start))
-            self._after(row)
-        else:
-            row = self._cabin.memory.row
+            self._after(self._cabin.control(self._controls(start)))
         self._compute_time = self._clock() - start
-        self._tell(row, lateness)
+        self._tell(self._cabin.memory.row, lateness)
 
     def _controls(self, now: float) -> Controls:
         """What person, head and network say at this step."""
@@ -189,26 +184,24 @@ class Driving:
         return self._indicator.asks(self._time, adjacent_side(self._road, lane))
 
     def _after(self, row: Any) -> None:  # Any: an array of float64
-        """Look at what the step gave: leaders, the end of the course, numbers."""
+        """Look at what the step gave: leaders, contacts, the course's end, numbers."""
         event = float(row[_APPEARED])
         if event > self._last_event:
             self._leaders = int(event)
         self._last_event = event
         if not math.isfinite(row[_POSITION] + row[_ANGLE]):
             self._break_off(Fault.NOT_FINITE)
+            return
+        offset = row[_LATERAL] - lane_centre(self._road, row[_LANE])
+        self._indicator.follow(row[_LANE], offset, row[_YAW], self._time)
+        if self._contacts.look(row[_CONTACT], self._clock()):
+            self._run_state = RunState.ENDED
         elif row[_POSITION] >= self._road.length:
             self._run_state = RunState.ENDED
             self._mark(Marker("ended", "course"))
 
     def _tell(self, row: Any, lateness: float) -> None:  # Any: an array of float64
         """Put a frame into the ring and wake the server."""
-        frame = self._frame
-        frame[: len(ROW_COLUMNS)] = row[: len(ROW_COLUMNS)]
-        added = row[len(ROW_COLUMNS) :]
-        last = slice(len(FRAME), len(FRAME) + len(self._own))
-        frame[last] = added if len(added) == len(self._own) else self._own
-        if self._run_state != RunState.RUNNING:
-            frame[_ANGLE] = self._cabin.steering_wheel_angle
         reading = self._cabin.reading
         extra = (
             float(self._run_state),
@@ -225,8 +218,10 @@ class Driving:
             self._choices.number,
             self._indicator.side,
         )
-        frame[len(ROW_COLUMNS) : len(FRAME)] = extra
-        self._frames.put(frame)
+        self._frame.fill(row, extra)
+        if self._run_state != RunState.RUNNING:
+            self._frame.numbers[_ANGLE] = self._cabin.steering_wheel_angle
+        self._frames.put(self._frame.numbers)
         with suppress(OSError):
             self._links.wake.send(b"f")
 
@@ -248,7 +243,7 @@ class Driving:
         if moving and reading is not None and now - reading.time > WHEEL_PATIENCE:
             self._break_off(Fault.SENSOR_STALE)
         if moving:
-            self._tracer.put(self._frame[_TIME], late, now - start, self._cabin)
+            self._tracer.put(self._frame.numbers[_TIME], late, now - start, self._cabin)
         else:
             self._tracer.follow(late, now - start, self._cabin)
 
@@ -272,6 +267,8 @@ class Driving:
             self.stopping = True
         if now > self._stop_at or (self._cabin.fade == 0.0 and self._stop_at < NEVER):
             self.stopping = True
+        if self._contacts.begins_anew(now):
+            self._do_restart()
         if self._run_state != RunState.RUNNING:
             return
         if self._is_unwatched(now):
@@ -379,6 +376,7 @@ class Driving:
         self._cabin.begin()
         self._leaders, self._last_event = 0, 0.0
         self._indicator.forget()
+        self._contacts.forget()
         self._run_state = RunState.WAITING
         self._mark(Marker("restarted"))
 

@@ -5,7 +5,11 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from costeer.records.columns import COLUMNS, Column
+import numpy as np
+from numpy.typing import NDArray
+
+from costeer.plant.fleet import MOST_CARS
+from costeer.records.columns import CAR_PREFIX, CAR_SIGNALS, COLUMNS, Column
 
 
 def _told(name: str, unit: str, description: str, stepped: bool = False) -> Column:
@@ -38,18 +42,48 @@ FRAME_COLUMNS = tuple(column.name for column in FRAME)
 MOST_METHOD_COLUMNS = 16
 """As many columns of its own a method may have in a drive: what is kept for them."""
 
-WIDTH = len(FRAME) + MOST_METHOD_COLUMNS
-"""Numbers of a frame; the method's own are the last, and may be fewer."""
+WIDTH = len(FRAME) + MOST_METHOD_COLUMNS + len(CAR_SIGNALS) * MOST_CARS
+"""Numbers of a frame; the method's own and those of other cars are the last, and may be
+fewer."""
 
 
 def frame_columns(added: Sequence[Column]) -> tuple[Column, ...]:
-    """The numbers of a frame with those that a method adds."""
+    """The numbers of a frame with those that a method and a scenario add."""
     return (*FRAME, *added)
 
 
 def absent(column: Column) -> float:
     """What a method's column is while another method runs."""
     return 0.0 if column.labels else math.nan
+
+
+class FrameRow:
+    """Room for one frame.
+
+    Args:
+        added: Columns of the method of the drive, then of other cars.
+    """
+
+    def __init__(self, added: Sequence[Column]) -> None:
+        own = [each for each in added if not each.name.startswith(CAR_PREFIX)]
+        self.numbers = np.full(WIDTH, np.nan)
+        self._absent = np.array([absent(each) for each in own])
+        self._num_cars = len(added) - len(own)
+
+    def fill(self, row: NDArray[np.float64], extra: Sequence[float]) -> None:
+        """Take over a row of the loop and the numbers of `EXTRA_COLUMNS`.
+
+        Another method than the drive's may run: its own columns have no place here.
+        """
+        numbers, usual, first = self.numbers, len(COLUMNS), len(FRAME)
+        numbers[:usual] = row[:usual]
+        numbers[usual:first] = extra
+        cars = len(row) - self._num_cars
+        of_method, missing = row[usual:cars], self._absent
+        is_ours = len(of_method) == len(missing)
+        last = first + len(missing)
+        numbers[first:last] = of_method if is_ours else missing
+        numbers[last : last + self._num_cars] = row[cars:]
 
 
 PLACE = {name: place for place, name in enumerate(FRAME_COLUMNS)}

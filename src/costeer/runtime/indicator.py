@@ -1,4 +1,4 @@
-"""The indicator: set from a page or by the wheel's paddles."""
+"""The indicator: set by a page or the wheel's paddles, off after the lane change."""
 
 from __future__ import annotations
 
@@ -14,6 +14,11 @@ from costeer.runtime.markers import Marker
 
 _WORDS = {-1.0: "right", 0.0: "off", 1.0: "left"}
 
+ARRIVED, STRAIGHT = 0.5, 0.015
+"""A lane change is over nearer to the lane's centre than this [m] and at less yaw
+against the road [rad]. Source: assumed; a lever springs back while the wheel is turned
+back, in the last part of the lane change."""
+
 
 class Indicator:
     """Side of the indicator and what it asks for.
@@ -27,11 +32,13 @@ class Indicator:
         self._mark = mark
         self._asked_until = -1.0
         self._pulled = 0
+        self._from: float | None = None
 
     def put(self, side: float, now: float) -> None:
         """Set it: -1 right, 0 off, +1 left, at a time of the trial [s]."""
         before, self.side = self.side, side
         self._asked_until = now + REQUEST_DURATION if side else -1.0
+        self._from = None
         self._mark(Marker("indicator", before=_WORDS[before], after=_WORDS[side]))
 
     def look(self, reading: WheelReading | None, now: float) -> None:
@@ -42,10 +49,27 @@ class Indicator:
                 self.put(0.0 if self.side == side else side, now)
         self._pulled = pulled
 
+    def follow(self, lane: float, offset: float, yaw: float, now: float) -> None:
+        """Switch off once the car has changed to a lane on this side.
+
+        Args:
+            lane: That the car is in, counted from the right [-].
+            offset: From that lane's centre [m].
+            yaw: Against the road [rad].
+            now: Time of the trial [s].
+        """
+        if not self.side:
+            return
+        if self._from is None:
+            self._from = lane
+        changed = (lane - self._from) * self.side > 0.0
+        if changed and abs(offset) < ARRIVED and abs(yaw) < STRAIGHT:
+            self.put(0.0, now)
+
     def asks(self, now: float, side: float) -> bool:
         """Whether it asks, at this time [s], for the lane on this side."""
         return self.side == side and now <= self._asked_until
 
     def forget(self) -> None:
         """Off, as a new trial begins."""
-        self.side, self._asked_until = 0.0, -1.0
+        self.side, self._asked_until, self._from = 0.0, -1.0, None

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import Literal, NamedTuple
 
-from costeer.runtime.states import Fault, Loss
+from costeer.runtime.states import Contact, Fault, Loss
 
 Kind = Literal[
     "started",
@@ -20,6 +20,7 @@ Kind = Literal[
     "method",
     "parameter",
     "indicator",
+    "contact",
     "fault",
     "gap",
     "lost",
@@ -61,6 +62,7 @@ _REASONS = {
     "stop": "stopped by the experimenter",
     "watchdog": "nobody watches the wheel any more",
     "course": "the end of the course is reached",
+    "collision": "the car has hit something",
     "server": "the drive was stopped",
 }
 
@@ -88,6 +90,9 @@ def _said(marker: Marker) -> str:
     if marker.kind == "fault":
         texts = {fault.word: fault.text for fault in Fault}
         return texts.get(marker.name, marker.name)
+    if marker.kind == "contact":
+        words = {contact.word: contact.text for contact in Contact}
+        return words.get(marker.name, marker.name)
     if marker.kind == "lost":
         texts = {loss.word: loss.text for loss in Loss}
         return texts.get(marker.name, marker.name)

@@ -51,7 +51,7 @@ def drive_metadata(
     hands = "virtual hands" if setup.wheel is None else setup.wheel.name
     virtual = is_virtual(setup)
     return {
-        **about,
+        **_told_in_json(about),
         "participant": setup.participant,
         "driver": f"{'virtual hands' if virtual else 'person'}, {hands}",
         "driver_kind": VIRTUAL if virtual else PERSON,
@@ -59,6 +59,15 @@ def drive_metadata(
         "intention_source": setup.intention,
         "head_tracker": None if setup.head is None else setup.head.tracker.kind,
     }
+
+
+def _told_in_json(value: Any) -> Any:  # Any: a tree of what a description holds
+    """The same with null for infinities, which JSON has not: a straight's radius."""
+    if isinstance(value, dict):
+        return {name: _told_in_json(each) for name, each in value.items()}
+    if isinstance(value, list | tuple):
+        return [_told_in_json(each) for each in value]
+    return None if isinstance(value, float) and math.isinf(value) else value
 
 
 TUNED_BY_HAND = {

@@ -20,8 +20,10 @@ from costeer.methods.conditions import condition as condition_named
 from costeer.methods.ibhs import IBHS
 from costeer.methods.manual import MANUAL
 from costeer.methods.registry import AnyMethod, method_named
-from costeer.records.columns import Column
+from costeer.plant.fleet import num_cars
+from costeer.records.columns import Column, car_columns
 from costeer.runtime.frame import MOST_METHOD_COLUMNS
+from costeer.scenarios.reading import scenario_named
 
 PLANT_STEPS = 16
 """Plant steps in a control step with a person: 960 Hz."""
@@ -70,9 +72,9 @@ def check_drive(setup: DriveSetup) -> None:
     """
     loop_parameters(setup.trial)
     offered_methods(setup)
-    if len(drive_columns(setup)) > MOST_METHOD_COLUMNS:
+    if (number := len(method_named(setup.trial.method).columns)) > MOST_METHOD_COLUMNS:
         raise ValueError(
-            f"the method adds {len(drive_columns(setup))} columns; a drive takes up to "
+            f"the method adds {number} columns; a drive takes up to "
             f"{MOST_METHOD_COLUMNS}"
         )
     if not isinstance(setup.trial.predictor, str):
@@ -109,8 +111,26 @@ def drive_parameters(setup: DriveSetup) -> LoopParameters[Any]:
     Raises:
         ValueError: If the trial cannot be run.
     """
-    arms = DriverParameters()
-    return loop_parameters(setup.trial._replace(plant_steps=PLANT_STEPS, driver=arms))
+    return loop_parameters(
+        setup.trial._replace(
+            plant_steps=PLANT_STEPS,
+            driver=DriverParameters(),
+            length=course_length(setup.trial),
+        )
+    )
+
+
+def course_length(trial: TrialSetup) -> float:
+    """Where a drive ends [m]: at the end of the scenario's road.
+
+    A length that was chosen for the trial itself counts instead.
+
+    Raises:
+        ValueError: If the scenario is not known.
+    """
+    if trial.length != TrialSetup._field_defaults["length"]:
+        return float(trial.length)
+    return scenario_named(trial.scenario).road.length
 
 
 def offered_methods(setup: DriveSetup) -> dict[str, str]:
@@ -136,11 +156,15 @@ def drive_method(setup: DriveSetup) -> AnyMethod:
 
 
 def drive_columns(setup: DriveSetup) -> tuple[Column, ...]:
-    """What the method of a drive adds to its record; empty while another one runs."""
-    return tuple(
+    """What the method of a drive adds to its record, and then its scenario.
+
+    Those of the method are empty while another one runs.
+    """
+    own = (
         each._replace(nullable=each.kind in ("int8", "bool"))
         for each in method_named(setup.trial.method).columns
     )
+    return (*own, *car_columns(num_cars(drive_parameters(setup).fleet)))
 
 
 def under(setup: DriveSetup, condition: str, method: str) -> DriveSetup:

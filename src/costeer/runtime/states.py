@@ -1,7 +1,7 @@
-"""Where a trial stands and what may be wrong: one table each, for loop and page.
+"""Where a trial stands, what may be wrong, what the car touches: a table each.
 
 The number of a member stands in a frame; its name in records and messages. The page is
-sent both tables in its hello and has no list of its own.
+sent the tables in its hello and has no list of its own.
 """
 
 from __future__ import annotations
@@ -144,8 +144,31 @@ class Loss(_Named):
     )
 
 
+@unique
+class Contact(_Named):
+    """What the car touches, as the column `contact` counts it (plant/place.py).
+
+    Attributes:
+        text: For people.
+    """
+
+    text: str
+
+    def __new__(cls, number: int, text: str) -> Self:
+        """A member with its words."""
+        contact = int.__new__(cls, number)
+        contact._value_ = number
+        contact.text = text
+        return contact
+
+    NOTHING = 0, ""
+    RUMBLE_STRIP = 1, "The wheels run on the rumble strip."
+    BARRIER = 2, "The car has hit the barrier."
+    CAR = 3, "The car has hit another car or an obstacle."
+
+
 def page_tables() -> dict[str, object]:
-    """Both tables as pages are sent them."""
+    """The tables as pages are sent them."""
     return {
         "run_states": [
             {
@@ -165,5 +188,9 @@ def page_tables() -> dict[str, object]:
                 "can_resume": each.can_resume,
             }
             for each in Fault
+        ],
+        "contacts": [
+            {"code": int(each), "name": each.word, "text": each.text}
+            for each in Contact
         ],
     }

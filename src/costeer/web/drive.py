@@ -14,6 +14,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from costeer.loop.trial import scenario_metadata
 from costeer.methods.conditions import CONDITION_NAMES
 from costeer.plant.parameters import wheelbase
 from costeer.runtime.choices import (
@@ -36,6 +37,7 @@ from costeer.runtime.setup import (
     offered_methods,
 )
 from costeer.runtime.states import Fault, RunState, page_tables
+from costeer.scenarios.reading import scenario_named
 from costeer.web.messages import (
     Indicator,
     Input,
@@ -50,6 +52,7 @@ from costeer.web.messages import (
     marker_shown,
     told_of,
 )
+from costeer.web.scenery import cars_of, scenery_of
 from costeer.web.session import Broadcast, Role
 
 FRAME_RATE = 60
@@ -191,12 +194,14 @@ class DriveOnPages:
     def hello(self, role: Role) -> dict[str, object]:
         """The first message to a page: what the numbers of a frame are, and choices."""
         parameters = drive_parameters(self.drive.setup)
-        road, car = parameters.road, parameters.car
+        road, car, trial = parameters.road, parameters.car, self.drive.setup.trial
         return {
             "mode": "drive",
             **told_of(self.columns),
             "rate": FRAME_RATE,
             "road": road._asdict(),
+            "scenario": scenery_of(scenario_metadata(trial)),
+            "other_cars": cars_of(scenario_named(trial.scenario), parameters.fleet),
             "car": {
                 "width": car.width,
                 "wheelbase": wheelbase(car),

@@ -13,6 +13,7 @@ from costeer.plant.parameters import CARS, CarParameters, RoadParameters
 from costeer.records.checks import check_time
 from costeer.records.columns import COLUMNS, COLUMNS_BY_NAME, Column, TrialRecord
 from costeer.web.messages import LONGEST_NAME, marker_shown, told_of
+from costeer.web.scenery import bounded, cars_of_record, scenery_of
 
 NEEDED = (
     "time",
@@ -136,6 +137,8 @@ def _described(record: TrialRecord, title: str) -> dict[str, object]:
         "markers": [marker_shown(marker) for marker in markers_of(about)],
         "rate": float(1.0 / np.median(np.diff(time))),
         "road": _road(about),
+        "scenario": scenery_of(about.get("scenario")),
+        "other_cars": cars_of_record(about, _road(about)["length"]),
         "car": _car(about),
         "conditions": [condition] if condition else [],
         "condition": condition,
@@ -144,7 +147,7 @@ def _described(record: TrialRecord, title: str) -> dict[str, object]:
         "tunables": [],
         "input": "wheel",
         "show_signals": True,
-        "torque_limit": _number(about.get("torque_limit"), 5.0, 0.1, 100.0),
+        "torque_limit": bounded(about.get("torque_limit"), 5.0, 0.1, 100.0),
     }
 
 
@@ -154,13 +157,6 @@ def _word(value: object) -> str:
     return str(value) if fits and str(value).isprintable() else ""
 
 
-def _number(value: object, usual: float, low: float, high: float) -> float:
-    """A number out of a record within what a page can draw, else what is usual."""
-    if isinstance(value, bool) or not isinstance(value, int | float):
-        return usual
-    return float(value) if low <= value <= high else usual
-
-
 def _within(about: Mapping[str, object], name: str) -> Mapping[str, object]:
     """A part of the configuration that a record keeps; empty if it does not."""
     configuration = about.get("configuration")
@@ -168,11 +164,11 @@ def _within(about: Mapping[str, object], name: str) -> Mapping[str, object]:
     return part if isinstance(part, Mapping) else {}
 
 
-def _road(about: Mapping[str, object]) -> dict[str, object]:
+def _road(about: Mapping[str, object]) -> dict[str, float]:
     """The road that was driven on."""
     given, usual = _within(about, "road"), RoadParameters()._asdict()
     return {
-        name: _number(given.get(name), float(usual[name]), *span)
+        name: bounded(given.get(name), float(usual[name]), *span)
         for name, span in _ROAD.items()
     }
 
@@ -183,7 +179,7 @@ def _car(about: Mapping[str, object]) -> dict[str, object]:
     given = _within(about, "car")
 
     def known(name: str) -> float:
-        return _number(given.get(name), float(getattr(usual, name)), *_CAR[name])
+        return bounded(given.get(name), float(getattr(usual, name)), *_CAR[name])
 
     return {
         "width": known("width"),

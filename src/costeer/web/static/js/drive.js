@@ -6,18 +6,19 @@ import { now } from "./clock.js";
 import { Controls, isTyping } from "./controls.js";
 import { byId } from "./elements.js";
 import { Columns } from "./frames.js";
+import { Happenings } from "./happenings.js";
 import { Hud, LINK_STATES, refused, toggleFullScreen } from "./hud.js";
 import { StateBuffer } from "./interpolation.js";
 import { FrameCounter, Latency } from "./latency.js";
 import { Panel } from "./panel.js";
 import { Link, socketAddress } from "./protocol.js";
 import { View } from "./scene/view.js";
+import { Sound } from "./sound.js";
 import { Strip } from "./strip.js";
 
 /** Longest time between two inputs [s]: they tell the server that the page lives. */
 const HEARTBEAT = 0.09;
-const PING_SPACING = 500;
-const SECOND = 1000;
+const [PING_SPACING, SECOND] = [500, 1000];
 /** Silence of an open socket after which the page says so [s]. */
 const SILENCE = 2;
 /** Code with which the server closes a socket that it does not want. */
@@ -38,7 +39,8 @@ export class Drive {
    */
   constructor(hello, options, query, texts) {
     this.hud = new Hud(texts);
-    this.view = new View(byId("view"), hello, options);
+    this.options = options;
+    this.happenings = new Happenings(this.hud, new Sound({ isMuted: options.isMuted }));
     this.strip = new Strip(byId("signals"));
     this.controls = new Controls();
     this.latency = new Latency();
@@ -87,6 +89,8 @@ export class Drive {
   /** Take over a hello: the first, and each one after a lost connection. */
   greet(hello) {
     this.hello = hello;
+    this.show(hello);
+    this.happenings.greet(hello);
     this.columns = new Columns(hello.columns, hello.stepped);
     this.runStates = byCode(hello.run_states);
     this.faults = byCode(hello.faults);
@@ -104,11 +108,21 @@ export class Drive {
     if (this.link) this.enterTrial();
   }
 
+  /** Draw the road of a hello; the next drive of a session may be on another one. */
+  show(hello) {
+    const road = JSON.stringify([hello.road, hello.scenario, hello.other_cars]);
+    if (road === this.road) return;
+    this.road = road;
+    this.view?.close();
+    this.view = new View(byId("view"), hello, this.options);
+  }
+
   /** Show where the trial stands, as the server told it last. */
   enterTrial() {
     if (this.isOver) return;
     const [state, fault] = this.stands;
-    this.enter(this.runStates.get(state), this.faults.get(fault));
+    const shown = this.happenings.state(this.runStates.get(state), this.lastValue("contact"));
+    this.enter(shown, this.faults.get(fault));
   }
 
   /** The socket has closed: the server has ended, let this page go, or is lost. */
@@ -148,7 +162,7 @@ export class Drive {
     else if (code === "KeyF") toggleFullScreen();
     else if (code === "KeyS") this.toggleStrip();
     else if (code === "KeyE") this.panel?.toggle();
-    else return false;
+    else return this.happenings.command(code, key);
     return true;
   }
 
@@ -156,10 +170,13 @@ export class Drive {
     if (this.goesOnBy) this.link?.send({ type: this.goesOnBy });
   }
 
+  lastValue(name) {
+    return this.lastFrame ? this.columns.finite(this.lastFrame, name) : 0;
+  }
+
   /** The same side again switches the indicator off. */
   indicate(side) {
-    const current = this.lastFrame ? this.columns.finite(this.lastFrame, "indicator") : 0;
-    this.link?.send({ type: "indicator", side: current === side ? 0 : side });
+    this.link?.send({ type: "indicator", side: this.lastValue("indicator") === side ? 0 : side });
   }
 
   toggleStrip() {
@@ -189,8 +206,7 @@ export class Drive {
       this.lastFrame = frame;
     }
     if (!this.lastFrame) return;
-    const code = (name) => this.columns.finite(this.lastFrame, name);
-    this.stands = [code("run_state"), code("fault")];
+    this.stands = [this.lastValue("run_state"), this.lastValue("fault")];
     this.enterTrial();
   }
 
@@ -239,14 +255,10 @@ export class Drive {
   }
 
   figures() {
-    const value = (name) => (this.lastFrame ? this.columns.value(this.lastFrame, name) : Number.NaN);
-    return {
-      fps: this.pictures.fps,
-      frameRate: this.states.fps,
-      latency: this.latency.summary(),
-      lateness: value("lateness"),
-      computeTime: value("compute_time"),
-    };
+    const { lateness, compute_time: computeTime } = this.lastFrame
+      ? this.columns.named(this.lastFrame) : { lateness: Number.NaN, compute_time: Number.NaN };
+    const latency = this.latency.summary();
+    return { fps: this.pictures.fps, frameRate: this.states.fps, latency, lateness, computeTime };
   }
 
   draw(time) {
@@ -255,7 +267,11 @@ export class Drive {
     this.drawn += 1;
     this.pictures.tick(time / 1000);
     const state = this.buffer.at(now());
-    if (state) this.view.update(this.columns, state);
+    if (state) {
+      this.view.update(this.columns, state);
+      const [isRunning, warns] = [this.state === "running", this.stands[1] !== 0];
+      this.happenings.see((name) => this.columns.finite(state, name), { isRunning, warns });
+    }
     this.view.render();
     this.strip.paint(time / 1000);
   }

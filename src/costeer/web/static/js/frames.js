@@ -4,8 +4,11 @@
  * A frame is a Float64Array; `Columns` knows which number is what.
  */
 
-/** A leader that is further off than this from its last place is another one [m]. */
-const LEADER_JUMP = 15;
+/** A car that is further off than this from its last place is another one [m]. */
+const JUMP = 15;
+
+/** Columns that say where another car is. */
+const OF_CARS = /^(lead_distance|car_\d+_position)$/;
 
 export class Columns {
   /**
@@ -16,7 +19,7 @@ export class Columns {
     this.names = names;
     this.index = new Map(names.map((name, place) => [name, place]));
     this.stepped = names.map((name) => stepped.includes(name));
-    this.jumping = names.map((name) => name === "lead_distance");
+    this.jumping = names.map((name) => OF_CARS.test(name));
   }
 
   /** The value of a column, NaN where the frame does not have it. */
@@ -53,7 +56,7 @@ export class Columns {
   blend(before, after, fraction, out) {
     for (let n = 0; n < out.length; n++) {
       const [a, b] = [before[n], after[n]];
-      const jumps = this.stepped[n] || (this.jumping[n] && Math.abs(b - a) > LEADER_JUMP);
+      const jumps = this.stepped[n] || (this.jumping[n] && Math.abs(b - a) > JUMP);
       const mixed = a + (b - a) * fraction;
       out[n] = jumps || Number.isNaN(mixed) ? b : mixed;
     }

@@ -3,7 +3,7 @@
  */
 
 /** Horizontal view of the whole set of screens [deg], by number of screens. */
-const USUAL_FOV = { 1: 60, 2: 100, 3: 140 };
+const USUAL_FOV = { 1: 70, 2: 100, 3: 140 };
 
 /**
  * A number from the address, kept within a range.
@@ -37,7 +37,7 @@ export function rendersInSoftware() {
  * Options of the page.
  * @param {string} search `location.search`
  * @returns {{low: boolean, screens: number, fov: number, isFovGiven: boolean,
- *   angle: number|null, mirrors: number, scale: number|null, counters: boolean}} `fov` and
+ *   angle: number|null, mirrors: number, scale: number|null, counters: boolean, isMuted: boolean}} `fov` and
  *   `angle` in degrees; `angle` lies between the planes of neighbouring screens, null where
  *   they stand around the eye.
  */
@@ -51,9 +51,10 @@ export function readOptions(search) {
     fov: number(query, "fov", USUAL_FOV[screens], 20, 179 * (screens > 1 ? 1 : 0.9)),
     isFovGiven: query.has("fov") || screens > 1,
     angle: query.has("angle") ? number(query, "angle", 0, 0, 90) : null,
-    mirrors: Math.round(number(query, "mirrors", low ? 0 : 3, 0, 3)),
+    mirrors: Math.round(number(query, "mirrors", 3, 0, 3)),
     scale: query.has("scale") ? number(query, "scale", 1, 0.2, 3) : null,
     counters: !flag(query, "clean"),
+    isMuted: flag(query, "mute"),
   };
 }
 

@@ -6,10 +6,12 @@ import { Charts, DRAWN, drawable } from "./charts.js";
 import { isTyping } from "./controls.js";
 import { byId } from "./elements.js";
 import { Columns } from "./frames.js";
+import { Happenings } from "./happenings.js";
 import { Hud, toggleFullScreen } from "./hud.js";
 import { FrameCounter } from "./latency.js";
 import { Playback } from "./playback.js";
 import { View } from "./scene/view.js";
+import { Sound } from "./sound.js";
 import { Transport } from "./transport.js";
 
 export class Replay {
@@ -23,6 +25,8 @@ export class Replay {
     this.playback = new Playback(this.columns, this.columns.split(record));
     this.hud = new Hud();
     this.hud.describeKeys("replay", hello.role);
+    this.happenings = new Happenings(this.hud, new Sound({ isMuted: options.isMuted }));
+    this.happenings.greet(hello);
     this.view = new View(byId("view"), hello, options);
     this.transport = new Transport(byId("transport"), this.playback, hello);
     this.counters = options.counters ? byId("counters") : null;
@@ -76,7 +80,7 @@ export class Replay {
     else if (code === "KeyS") byId("signals").hidden = !byId("signals").hidden;
     else if (code === "KeyF") toggleFullScreen();
     else if (code === "KeyH" || key === "?") this.hud.toggleHelp();
-    else return false;
+    else return this.happenings.command(code, key);
     return true;
   }
 
@@ -87,6 +91,9 @@ export class Replay {
     this.last = time;
     this.shown = this.playback.state();
     this.view.update(this.columns, this.shown);
+    this.happenings.see((name) => this.columns.finite(this.shown, name), {
+      isRunning: this.playback.isPlaying, warns: false,
+    });
     this.view.render();
     this.transport.show();
     for (const { plot, line } of this.cursors) {

@@ -2,14 +2,12 @@
  * Car: a saloon of usual size, built of a few drawn-out side views.
  */
 
-import {
-  CylinderGeometry, Group, Matrix4, MeshBasicMaterial, PlaneGeometry, Shape,
-} from "../../vendor/three.module.js";
+import { CylinderGeometry, Matrix4, PlaneGeometry, Shape } from "../../vendor/three.module.js";
 import { box, coloured, drawnOut, merged, outline, quad } from "./geometry.js";
-import { canvas, shadowTexture, textureOf } from "./textures.js";
+import { canvas, textureOf } from "./textures.js";
 
 /** Over all [m]. */
-export const CAR_LENGTH = 4.55;
+const LENGTH = 4.55;
 const WIDTH = 1.78;
 const GLASS = "#1d262c";
 const BLACK = "#16181a";
@@ -41,8 +39,8 @@ function halfCabin(z) {
 const CABIN = [[-1.92, 0.94], [-1.12, 1.39], [-0.85, 1.445], [0.1, 1.455], [0.4, 1.41], [1.22, 0.93]];
 
 /** The cabin, leaning in. */
-function cabin(colour) {
-  const geometry = drawnOut(outline(CABIN), 1.63, 0.05);
+function cabin(colour, coarse) {
+  const geometry = drawnOut(outline(CABIN), 1.63, 0.05, coarse);
   const { position } = geometry.attributes;
   for (let n = 0; n < position.count; n++) {
     position.setY(n, (position.getY(n) * halfCabin(position.getZ(n))) / halfCabin(0.94));
@@ -71,18 +69,27 @@ function sideWindows(side) {
   });
 }
 
-function wheel(x, side) {
+function wheel(x, side, coarse) {
   const turn = (radius, width, y, colour) =>
-    coloured(new CylinderGeometry(radius, radius, width, 24).translate(x, side * y, WHEEL_RADIUS), colour);
+    coloured(new CylinderGeometry(radius, radius, width, coarse ? 12 : 24).translate(x, side * y, WHEEL_RADIUS), colour);
   return [turn(WHEEL_RADIUS, 0.2, 0.775, BLACK), turn(0.21, 0.02, 0.87, "#aeb4b8")];
 }
 
-/** Lamps at the back, by whether they shine. */
-function rearLamps(colour) {
+/** Brake lamps. */
+function brakeLamps() {
   return merged([
-    box([0.06, 0.36, 0.13], [-2.215, 0.66, 0.78], colour),
-    box([0.06, 0.36, 0.13], [-2.215, -0.66, 0.78], colour),
-    box([0.04, 0.34, 0.03], [-1.12, 0, 1.405], colour),
+    box([0.06, 0.36, 0.13], [-2.215, 0.66, 0.78], "#ffffff"),
+    box([0.06, 0.36, 0.13], [-2.215, -0.66, 0.78], "#ffffff"),
+    box([0.04, 0.34, 0.03], [-1.12, 0, 1.405], "#ffffff"),
+  ]);
+}
+
+/** Indicators of one side: rear, front, and in the mirror. */
+function indicators(side) {
+  return merged([
+    box([0.065, 0.12, 0.12], [-2.215, side * 0.79, 0.66], "#ffffff"),
+    box([0.1, 0.12, 0.1], [2.08, side * 0.8, 0.68], "#ffffff"),
+    box([0.03, 0.05, 0.05], [0.9, side * 0.99, 1.0], "#ffffff"),
   ]);
 }
 
@@ -114,47 +121,49 @@ function details(colour) {
   ];
 }
 
-/** A car of one colour, with its middle at the origin, wheels on z = 0. */
-export class Car {
-  /** @param {import("./workshop.js").Workshop} workshop */
-  constructor(workshop, colour) {
-    this.group = new Group();
-    const body = coloured(drawnOut(bodyShape(), WIDTH, 0.09), colour);
-    const paint = merged([body, cabin(colour), ...details(colour)]);
-    const glass = merged([
-      crossWindow([-1.86, 0.975], [-1.19, 1.355], -0.03),
-      crossWindow([1.13, 0.985], [0.46, 1.365], 0.03),
-      ...sideWindows(1), ...sideWindows(-1),
-    ]);
-    const wheels = WHEEL_PLACES.flatMap((x) => [...wheel(x, 1), ...wheel(x, -1)]);
-    this.group.add(
-      workshop.glossy(paint), workshop.glossy(glass, { roughness: 0.12 }),
-      workshop.mesh(merged(wheels)), this.plate(workshop), this.shadow(workshop),
-    );
-    this.dark = new MeshBasicMaterial({ color: "#7a1016" });
-    this.bright = new MeshBasicMaterial({ color: "#ff2a22" });
-    this.lamps = workshop.plain(rearLamps("#ffffff"));
-    this.lamps.material = this.dark;
-    this.group.add(this.lamps);
-  }
+/** A saloon far away: its body and cabin without wheels' rounds and details. */
+function distant(colour) {
+  const side = [[-2.2, 0.28], [-2.2, 0.95], [0.95, 0.95], [2.1, 0.66], [2.2, 0.28]];
+  return merged([
+    coloured(drawnOut(outline(side), WIDTH), colour), cabin(colour, true),
+    box([4.0, 1.6, 0.3], [0, 0, 0.2], BLACK),
+  ]);
+}
 
-  plate(workshop) {
-    const mesh = workshop.plain(new PlaneGeometry(0.33, 0.165), { map: numberPlate() });
-    mesh.geometry.applyMatrix4(new Matrix4().set(0, 0, -1, 0, -1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 1));
-    mesh.position.set(-2.285, 0, 0.56);
-    return mesh;
-  }
+/** Glass all around. */
+function windows() {
+  return merged([
+    crossWindow([-1.86, 0.975], [-1.19, 1.355], -0.03),
+    crossWindow([1.13, 0.985], [0.46, 1.365], 0.03),
+    ...sideWindows(1), ...sideWindows(-1),
+  ]);
+}
 
-  shadow(workshop) {
-    const look = { map: shadowTexture(), transparent: true, depthWrite: false, fog: false };
-    const mesh = workshop.plain(new PlaneGeometry(5.2, 2.5), look);
-    // Towards the side away from the sun.
-    mesh.position.set(0.12, -0.15, 0.02);
-    return mesh;
-  }
+function plate(workshop) {
+  const mesh = workshop.plain(new PlaneGeometry(0.33, 0.165), { map: numberPlate() });
+  mesh.geometry.applyMatrix4(new Matrix4().set(0, 0, -1, 0, -1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 1));
+  mesh.geometry.translate(-2.285, 0, 0.56);
+  return mesh;
+}
 
-  /** Light or darken the brake lamps. */
-  set braking(isBraking) {
-    this.lamps.material = isBraking ? this.bright : this.dark;
-  }
+/**
+ * The meshes of a car of one colour, with its middle at the origin, wheels on z = 0.
+ * @param {import("./workshop.js").Workshop} workshop
+ */
+export function carParts(workshop, colour) {
+  const { low } = workshop;
+  const body = coloured(drawnOut(bodyShape(), WIDTH, 0.09, low), colour);
+  const paint = merged([body, cabin(colour, low), ...details(colour)]);
+  const wheels = merged(WHEEL_PLACES.flatMap((x) => [...wheel(x, 1, low), ...wheel(x, -1, low)]));
+  // What is lit alike is drawn at once.
+  const near = low
+    ? [workshop.mesh(merged([paint, windows(), wheels])), plate(workshop)]
+    : [
+      workshop.glossy(paint), workshop.glossy(windows(), { roughness: 0.12 }),
+      workshop.mesh(wheels), plate(workshop),
+    ];
+  return {
+    size: [LENGTH, WIDTH], near, far: [workshop.mesh(merged([distant(colour), windows()]))],
+    brakes: brakeLamps(), left: indicators(1), right: indicators(-1),
+  };
 }

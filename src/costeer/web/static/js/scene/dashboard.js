@@ -12,6 +12,14 @@ const SWEEP = Math.PI * 1.4;
 /** Times per second that an indicator lights up. */
 const BLINKS = 1.5;
 
+/** Whether somebody wishes for less that moves and blinks. */
+export const isCalm = globalThis.matchMedia?.("(prefers-reduced-motion: reduce)").matches ?? false;
+
+/** Whether an indicator that is on is lit at a time [s]; where less shall move, always. */
+export function isLit(time) {
+  return isCalm || (time * BLINKS) % 1 < 0.55;
+}
+
 /** Size of the picture, drawn in these units whatever its resolution. */
 const WIDTH = 900;
 const HEIGHT = 300;
@@ -77,7 +85,7 @@ export class Dashboard {
    */
   update({ speed, distance, indicator, time }) {
     const kmh = Math.abs(speed) * 3.6;
-    const lit = indicator !== 0 && (time * BLINKS) % 1 < 0.55 ? indicator : 0;
+    const lit = indicator !== 0 && isLit(time) ? indicator : 0;
     const wanted = `${kmh.toFixed(1)} ${(distance / 100).toFixed(0)} ${lit}`;
     if (wanted === this.shown) return;
     this.shown = wanted;

@@ -16,7 +16,7 @@ export const EYE_FORWARD = -0.1;
  * Part of a screen's height that lies above the horizon [-]. Below it there is more to
  * see: road, wheel and instruments. The picture is shifted, not tilted.
  */
-const ABOVE_HORIZON = 0.4;
+const ABOVE_HORIZON = 0.33;
 
 const RADIAN = Math.PI / 180;
 

@@ -44,16 +44,17 @@ export function outline(points) {
  * @param {Shape} shape
  * @param {number} width along y, bevel included [m]
  * @param {number} bevel radius of its rounded edges [m]
+ * @param {boolean} coarse with few faces, for machines that draw slowly
  */
-export function drawnOut(shape, width, bevel = 0) {
+export function drawnOut(shape, width, bevel = 0, coarse = false) {
   const geometry = new ExtrudeGeometry(shape, {
     depth: width - 2 * bevel,
     bevelEnabled: bevel > 0,
     bevelSize: bevel,
     bevelOffset: -bevel,
     bevelThickness: bevel,
-    bevelSegments: 3,
-    curveSegments: 20,
+    bevelSegments: coarse ? 1 : 3,
+    curveSegments: coarse ? 5 : 20,
   });
   geometry.translate(0, 0, -(width - 2 * bevel) / 2);
   return geometry.applyMatrix4(new Matrix4().makeRotationX(Math.PI / 2));

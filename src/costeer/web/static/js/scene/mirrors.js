@@ -7,11 +7,11 @@
 
 import {
   AlwaysDepth, Group, HalfFloatType, LinearFilter, Matrix4, PerspectiveCamera, PlaneGeometry, Shape, Vector3,
-  WebGLRenderTarget,
+  UnsignedByteType, WebGLRenderTarget,
 } from "../../vendor/three.module.js";
 import { aim } from "./axes.js";
 import { EYE_FORWARD, verticalEdges } from "./eye.js";
-import { drawnOut, coloured } from "./geometry.js";
+import { box, coloured, drawnOut } from "./geometry.js";
 
 /** Layer of the own car's body: only the door mirrors see it. */
 export const OWN_BODY = 1;
@@ -70,7 +70,7 @@ class Mirror {
     this.height = 2 * Math.tan((plan.height * RADIAN) / 2);
     const aspect = this.width / this.height;
     this.target = new WebGLRenderTarget(pixels, Math.round(pixels / aspect), {
-      type: HalfFloatType, minFilter: LinearFilter, samples: workshop.low ? 0 : 4,
+      type: workshop.low ? UnsignedByteType : HalfFloatType, minFilter: LinearFilter, samples: workshop.low ? 0 : 4,
     });
     const tall = (2 * Math.atan(Math.tan((plan.fov * RADIAN) / 2) / aspect)) / RADIAN;
     this.camera = new PerspectiveCamera(tall, aspect, 0.5, 4500);
@@ -95,13 +95,23 @@ class Mirror {
     const mesh = new Group();
     const picture = workshop.plain(glass, { map: this.target.texture });
     this.target.texture.minFilter = LinearFilter;
-    mesh.add(shell, picture);
+    const arm = workshop.mesh(this.arm());
+    arm.position.z = -0.003;
+    mesh.add(arm, shell, picture);
     // In a narrow view they hang before the pillars, so nothing may hide them.
-    [shell, picture].forEach((part, order) => {
+    [arm, shell, picture].forEach((part, order) => {
       part.renderOrder = 10 + order;
       part.material.depthFunc = AlwaysDepth;
     });
     return mesh;
+  }
+
+  /** What bears it: the centre mirror hangs from the roof, the others stand at the doors. */
+  arm() {
+    const { seesBody, bearing } = this.plan;
+    if (!seesBody) return box([0.022, 0.3, 0.001], [0, this.height / 2 + 0.15, 0], "#1b1e21");
+    const towards = Math.sign(bearing) * (this.width / 2 + 0.03);
+    return box([0.09, 0.035, 0.001], [towards, -this.height * 0.36, 0], "#15181b");
   }
 
   /**
@@ -160,8 +170,10 @@ export class Mirrors {
 
   /** Draw what the mirrors show: all of them, in low quality one at a time. */
   render(renderer, scene) {
-    const all = this.isLow ? this.all.slice(this.turn, this.turn + 1) : this.all;
-    this.turn = (this.turn + 1) % Math.max(1, this.all.length);
+    // The centre mirror every second time, those at the doors in turn.
+    const next = this.turn % 2 === 0 ? 0 : 1 + (((this.turn - 1) / 2) % Math.max(1, this.all.length - 1));
+    this.turn += 1;
+    const all = this.isLow ? this.all.slice(next, next + 1) : this.all;
     for (const mirror of all) {
       renderer.setRenderTarget(mirror.target);
       renderer.clear();

@@ -3,20 +3,21 @@
  *
  * They are cut into short pieces. A face that reaches from far behind the eye to the
  * horizon is clipped so unevenly that its depth is wrong by metres, and things behind it
- * shine through.
+ * shine through; and a piece is what a curve is made of.
  */
 
 import { coloured, quad } from "./geometry.js";
 import { AHEAD, BEHIND } from "./layout.js";
 import { BufferAttribute, BufferGeometry } from "../../vendor/three.module.js";
 
-/** Length of a piece: short where the eye is, longer far away [m]. */
-const STEPS = [[-BEHIND, 50], [-50, 10], [100, 50], [400, 100]];
+/** Length of a piece from a place on: short where the eye is, longer far away [m]. */
+const STRAIGHT = [[-BEHIND, 50], [-50, 10], [100, 50], [400, 100]];
+const CURVED = [[-BEHIND, 20], [-80, 5], [150, 10], [400, 25], [900, 50]];
 
-function cuts() {
+function cuts(steps) {
   const found = [];
-  STEPS.forEach(([from, step], n) => {
-    const end = STEPS[n + 1]?.[0] ?? AHEAD;
+  steps.forEach(([from, step], n) => {
+    const end = steps[n + 1]?.[0] ?? AHEAD;
     for (let x = from; x < end; x += step) found.push(x);
   });
   return [...found, AHEAD];
@@ -33,22 +34,21 @@ function joined(pieces) {
 }
 
 /**
- * A face along the whole scenery between two lines.
- * @param {[number, number]} first y and z of the line on its left, as seen from its front
- *   along the road [m]
- * @param {[number, number]} second y and z of the other line
- * @param {string} colour
- * @param {[number, number]|null} tile size of its texture across and along [m]
+ * What makes faces along the whole scenery between two lines, for a straight or a curved road:
+ * of `[y, z]` of the line on its left, as seen from its front along the road, that of the other
+ * line [m], a colour, and the size of its texture across and along [m], if it has one.
  */
-export function ribbon([y0, z0], [y1, z1], colour, tile = null) {
-  const places = cuts();
-  const pieces = places.slice(1).map((front, n) => {
-    const back = places[n];
-    return quad([[back, y0, z0], [back, y1, z1], [front, y1, z1], [front, y0, z0]], colour);
-  });
-  const geometry = coloured(joined(pieces), colour);
-  if (tile) addTexturePlaces(geometry, [y0, z0], tile);
-  return geometry;
+export function ribbons(isStraight) {
+  const places = cuts(isStraight ? STRAIGHT : CURVED);
+  return ([y0, z0], [y1, z1], colour, tile = null) => {
+    const pieces = places.slice(1).map((front, n) => {
+      const back = places[n];
+      return quad([[back, y0, z0], [back, y1, z1], [front, y1, z1], [front, y0, z0]], colour);
+    });
+    const geometry = coloured(joined(pieces), colour);
+    if (tile) addTexturePlaces(geometry, [y0, z0], tile);
+    return geometry;
+  };
 }
 
 function addTexturePlaces(geometry, [y0, z0], [across, along]) {

@@ -6,10 +6,9 @@
  */
 
 import { Group } from "../../vendor/three.module.js";
-import { merged } from "./geometry.js";
+import { merged, quad } from "./geometry.js";
 import { stream } from "./random.js";
-import { ribbon } from "./ribbon.js";
-import { blobs, canvas, grain, grassTexture, textureOf } from "./textures.js";
+import { blobs, canvas, grain, textureOf } from "./textures.js";
 
 /** Japanese expressway: dashes of 8 m, gaps of 12 m. */
 const PATTERN = 20;
@@ -17,6 +16,9 @@ const DASH = 8;
 const DASH_WIDTH = 0.15;
 const EDGE_WIDTH = 0.2;
 const PAINT = "#e9e9e2";
+
+/** Rumble strip: beyond the outer lines, grooves across the road (plant/place.py) [m]. */
+const STRIP = { begins: 0.1, width: 0.4, grooves: 33 };
 
 /** Places on the texture: across in metres from the carriageway's left edge. */
 function plan(layout, low) {
@@ -56,6 +58,19 @@ function tracks(pen, map, layout) {
   }
 }
 
+/** Milled grooves: a dark and a bright edge each. */
+function strip(pen, map, y, side) {
+  const edges = [STRIP.begins, STRIP.begins + STRIP.width].map((out) => map.across(y + side * out));
+  const [x0, x1] = edges.sort((a, b) => a - b);
+  const pitch = map.height / STRIP.grooves;
+  for (let n = 0; n < STRIP.grooves; n++) {
+    pen.fillStyle = "rgba(28,29,31,0.55)";
+    pen.fillRect(x0, n * pitch, x1 - x0, pitch * 0.42);
+    pen.fillStyle = "rgba(160,162,160,0.35)";
+    pen.fillRect(x0, (n + 0.42) * pitch, x1 - x0, pitch * 0.14);
+  }
+}
+
 function asphalt(layout, low, sharpness) {
   const map = plan(layout, low);
   const { element, pen } = canvas(map.width, map.height);
@@ -66,6 +81,10 @@ function asphalt(layout, low, sharpness) {
   const tones = ["#5b5e60", "#727577", "#7d8081", "#525557", "#6b6e70"];
   grain(pen, element, (map.width * map.height) / 22, tones, 23, map.width / 700);
   tracks(pen, map, layout);
+  if (layout.hasStrip) {
+    strip(pen, map, layout.outerEdge, layout.outer);
+    strip(pen, map, layout.innerEdge, -layout.outer);
+  }
   const inset = layout.outer * 0.02;
   line(pen, map, layout.outerEdge - inset, EDGE_WIDTH, 0, PATTERN);
   line(pen, map, layout.innerEdge + inset, EDGE_WIDTH, 0, PATTERN);
@@ -75,30 +94,60 @@ function asphalt(layout, low, sharpness) {
   return textureOf(element, { repeat: true, sharpness });
 }
 
-/** Ground beside the road: verges, banks, median and the fields beyond. */
-function ground(workshop, layout) {
-  const o = layout.outer;
-  const { outerPaved, innerPaved, opposite, oppositeFar } = layout;
+/** Ground beside the road: verges, banks and median. */
+function ground(workshop, layout, map) {
+  const { outer: o, innerPaved, opposite, ribbon } = layout;
+  const far = layout.oppositeFar - o * layout.verge;
   const pieces = [
-    [[outerPaved, 0], [outerPaved + o * 1.2, -0.12]],
-    [[outerPaved + o * 1.2, -0.12], [outerPaved + o * 9, -1.3]],
-    [[outerPaved + o * 9, -1.3], [outerPaved + o * 700, -1.3]],
+    ...bank(layout.outerPaved, layout.outerBarrier, o),
     [[innerPaved, 0], [opposite, 0]],
-    [[oppositeFar, 0], [oppositeFar - o * 1.2, -0.12]],
-    [[oppositeFar - o * 1.2, -0.12], [oppositeFar - o * 9, -1.3]],
-    [[oppositeFar - o * 9, -1.3], [oppositeFar - o * 700, -1.3]],
+    ...bank(layout.oppositeFar, far, -o),
   ];
   const fromLeft = pieces.map((piece) => piece.sort(([a], [b]) => b - a));
-  const map = grassTexture(workshop.sharpness);
   const tones = ["#c9c4b0", "#ffffff", "#ffffff", "#e8e6d4", "#c9c4b0", "#ffffff", "#ffffff"];
   return fromLeft.map((piece, n) => workshop.mesh(ribbon(...piece, tones[n], [10, 10]), { map }));
 }
 
+/** From the pavement's edge past the barrier down to the fields. */
+function bank(paved, barrier, side) {
+  const [brink, foot, end] = [1.2, 9, 42].map((out) => barrier + side * out);
+  return [
+    [[paved, 0], [brink, -0.12]],
+    [[brink, -0.12], [foot, -1.3]],
+    [[foot, -1.3], [end, -1.3]],
+  ];
+}
+
+/** Side of the fields [m], and size of a piece of their texture. */
+const FIELDS = 5200;
+const TILE = 10;
+
+/**
+ * The fields beyond, one flat piece: it does not bend with the road but stands still while
+ * the road turns over it.
+ */
+export function buildFields(workshop, map) {
+  const half = FIELDS / 2;
+  const corners = [[-half, -half, 0], [half, -half, 0], [half, half, 0], [-half, half, 0]];
+  const geometry = quad(corners, "#ffffff", true);
+  const { uv } = geometry.attributes;
+  for (let n = 0; n < uv.count; n++) uv.setXY(n, (uv.getX(n) * FIELDS) / TILE, (uv.getY(n) * FIELDS) / TILE);
+  const mesh = workshop.mesh(geometry, { map });
+  const update = ({ x, y, heading }) => {
+    const [dx, dy] = [x, y].map((place) => Math.round(place / TILE) * TILE - place);
+    const [c, s] = [Math.cos(heading), Math.sin(heading)];
+    mesh.position.set(c * dx + s * dy, c * dy - s * dx, -1.5);
+    mesh.rotation.z = -heading;
+  };
+  return { mesh, update };
+}
+
 /** Low kerbs at both sides of the median. */
 function kerbs(layout) {
-  const o = layout.outer;
+  const { outer: o, ribbon } = layout;
   const faces = [];
-  for (const [y, side] of [[layout.innerPaved, o], [layout.opposite, -o]]) {
+  const far = layout.opposite + o * layout.verge;
+  for (const [y, side] of [[layout.innerBarrier - o * 0.2, o], [far + o * 0.2, -o]]) {
     const [foot, edge, back] = [[y, 0], [y, 0.14], [y - side * 0.16, 0.14]];
     faces.push(side > 0 ? ribbon(foot, edge, "#b5b6b2") : ribbon(edge, foot, "#b5b6b2"));
     faces.push(side > 0 ? ribbon(edge, back, "#c3c4bf") : ribbon(back, edge, "#c3c4bf"));
@@ -110,21 +159,22 @@ function kerbs(layout) {
  * The road and the ground, around the car; it repeats every 20 m along x.
  * @param {import("./workshop.js").Workshop} workshop
  */
-export function buildRoad(workshop, layout) {
+export function buildRoad(workshop, layout, grass) {
+  const { ribbon } = layout;
   const road = new Group();
   const map = asphalt(layout, workshop.low, workshop.roadSharpness);
   const tile = [layout.width, PATTERN];
   const left = Math.max(layout.outerPaved, layout.innerPaved);
   road.add(workshop.mesh(ribbon([left, 0], [left - layout.width, 0], "#ffffff", tile), { map }));
   road.add(workshop.mesh(oppositeStrip(layout, tile), { map }));
-  road.add(...ground(workshop, layout), workshop.mesh(kerbs(layout)));
+  road.add(...ground(workshop, layout, grass), workshop.mesh(kerbs(layout)));
   return road;
 }
 
 /** The other carriageway: the same, turned around, so that its shoulders fit. */
 function oppositeStrip(layout, tile) {
   const [a, b] = [layout.opposite, layout.oppositeFar];
-  const geometry = ribbon([Math.max(a, b), 0], [Math.min(a, b), 0], "#f4f4f4", tile);
+  const geometry = layout.ribbon([Math.max(a, b), 0], [Math.min(a, b), 0], "#f4f4f4", tile);
   const { uv } = geometry.attributes;
   for (let n = 0; n < uv.count; n++) uv.setXY(n, 1 - uv.getX(n), -uv.getY(n));
   return geometry;

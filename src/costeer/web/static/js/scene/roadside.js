@@ -9,10 +9,10 @@ import {
   Color, CylinderGeometry, Group, InstancedMesh, Matrix4, MeshBasicMaterial, PlaneGeometry,
   Vector3,
 } from "../../vendor/three.module.js";
-import { box, coloured, merged, quad } from "./geometry.js";
-import { AHEAD, BEHIND, PERIOD } from "./layout.js";
+import { isCalm } from "./dashboard.js";
+import { box, coloured, merged } from "./geometry.js";
+import { AHEAD, BARRIER_DEPTH, BEHIND, PERIOD } from "./layout.js";
 import { hash, stream } from "./random.js";
-import { ribbon } from "./ribbon.js";
 import { hedgeTexture, plantTextures, wallTexture } from "./textures.js";
 
 const STEEL = "#c9ced1";
@@ -23,7 +23,7 @@ const ORANGE_REFLECTOR = "#ff9d2e";
 const RAIL = [[0, 0.46], [0.07, 0.5], [0.07, 0.56], [0.01, 0.61], [0.07, 0.66], [0.07, 0.72], [0, 0.76]];
 
 /** A rail along the whole scenery; `side` points from it to the traffic, -1 or +1. */
-function rail(y, side) {
+function rail({ ribbon }, y, side) {
   const facets = [];
   for (let n = 1; n < RAIL.length; n++) {
     const [low, high] = [RAIL[n - 1], RAIL[n]].map(([depth, z]) => [y + side * depth, z]);
@@ -49,22 +49,23 @@ function fill(many, step, y, reach = AHEAD) {
 /** Guard rails with posts at both sides of the carriageway, and the far one's. */
 function rails(workshop, layout) {
   const o = layout.outer;
+  const { verge } = layout;
   const lines = [
-    [layout.outerPaved + o * 0.35, -o],
-    [layout.innerPaved - o * 0.55, o],
-    [layout.opposite + o * 0.55, -o],
-    [layout.oppositeFar - o * 0.35, o],
+    [layout.outerBarrier + o * BARRIER_DEPTH, -o],
+    [layout.innerBarrier - o * BARRIER_DEPTH, o],
+    [layout.opposite + o * (verge + BARRIER_DEPTH), -o],
+    [layout.oppositeFar - o * (verge + BARRIER_DEPTH), o],
   ];
   const most = Math.ceil((AHEAD + BEHIND) / 4) * lines.length;
   const posts = workshop.copies(box([0.11, 0.11, 0.8], [0, 0, 0.36], "#aab0b3"), most);
   const [shown, reach] = workshop.low ? [lines.slice(0, 2), 300] : [lines, 700];
   for (const [y, side] of shown) fill(posts, 4, y - side * 0.07, reach);
-  return [workshop.mesh(merged(lines.map(([y, side]) => rail(y, side)))), posts];
+  return [workshop.mesh(merged(lines.map(([y, side]) => rail(layout, y, side)))), posts];
 }
 
 /** Reflector posts every 50 m: white at the outer side, orange at the median. */
 function reflectors(workshop, layout) {
-  const disc = new CylinderGeometry(0.055, 0.055, 0.02, 12).applyMatrix4(
+  const disc = new CylinderGeometry(0.055, 0.055, 0.02, workshop.low ? 5 : 12).applyMatrix4(
     new Matrix4().makeRotationZ(Math.PI / 2),
   );
   const post = (colour) => {
@@ -73,8 +74,8 @@ function reflectors(workshop, layout) {
   };
   const o = layout.outer;
   const places = [
-    [layout.outerPaved + o * 0.18, WHITE_REFLECTOR],
-    [layout.innerPaved - o * 0.4, ORANGE_REFLECTOR],
+    [layout.outerBarrier + o * 0.3, WHITE_REFLECTOR],
+    [layout.innerBarrier - o * 0.3, ORANGE_REFLECTOR],
   ];
   const most = (AHEAD + BEHIND) / 50;
   return places.map(([y, colour]) => fill(workshop.copies(post(colour), most), 50, y));
@@ -82,6 +83,7 @@ function reflectors(workshop, layout) {
 
 /** A clipped hedge along the median, against glare. */
 function hedge(workshop, layout) {
+  const { ribbon } = layout;
   const middle = (layout.innerPaved + layout.opposite) / 2;
   const [half, top, tile] = [0.42, 1.05, 1.6];
   const [left, right] = [1, -1].map((side) => [
@@ -107,20 +109,15 @@ function stretch(number) {
  * Let copies of an upright picture turn about their stem towards the eye, whichever eye
  * it is: that of the driver or of a mirror.
  */
-function facingTheEye(many) {
-  many.material.onBeforeCompile = (shader) => {
-    shader.vertexShader = shader.vertexShader.replace(
-      "#include <project_vertex>",
-      `vec4 mvPosition = modelViewMatrix * instanceMatrix * vec4(0.0, 0.0, 0.0, 1.0);
-      vec3 stem = normalize((modelViewMatrix * vec4(0.0, 0.0, 1.0, 0.0)).xyz);
-      vec3 side = normalize(cross(stem, -mvPosition.xyz));
-      mvPosition.xyz += side * position.x * length(instanceMatrix[0].xyz);
-      mvPosition.xyz += stem * position.z * length(instanceMatrix[2].xyz);
-      gl_Position = projectionMatrix * mvPosition;`,
-    );
-  };
-  return many;
-}
+const FACING = `
+vec4 mvPosition = modelMatrix * instanceMatrix * vec4(0.0, 0.0, 0.0, 1.0);
+mvPosition = viewMatrix * vec4(bent(mvPosition.xyz), 1.0);
+vec3 stem = normalize((modelViewMatrix * vec4(0.0, 0.0, 1.0, 0.0)).xyz);
+vec3 side = normalize(cross(stem, -mvPosition.xyz));
+mvPosition.xyz += side * position.x * length(instanceMatrix[0].xyz);
+mvPosition.xyz += stem * position.z * length(instanceMatrix[2].xyz);
+gl_Position = projectionMatrix * mvPosition;
+`;
 
 /** An upright picture, one metre wide and high. */
 function picture() {
@@ -137,12 +134,13 @@ class Stretches {
     this.plants = plantTextures().map((map) => {
       const many = new InstancedMesh(picture(), new MeshBasicMaterial({ map, alphaTest: 0.5 }), most);
       many.frustumCulled = false;
-      return facingTheEye(many);
+      workshop.course.bend(many.material, FACING);
+      return many;
     });
     const wall = wallGeometry();
     this.walls = workshop.copies(wall, 40, { map: wallTexture(workshop.sharpness), side: 2 });
     this.group.add(...this.plants, this.walls);
-    this.density = workshop.low ? 0.4 : 1;
+    this.density = (workshop.low ? 0.4 : 1) * (isCalm ? 0.4 : 1);
     this.reach = workshop.low ? 800 : AHEAD;
     this.first = null;
   }
@@ -163,14 +161,15 @@ class Stretches {
 
   /** Add one stretch that begins at x. */
   add(number, x) {
-    const { outer, outerPaved, oppositeFar } = this.layout;
+    const { outer, outerBarrier, verge } = this.layout;
+    const far = this.layout.oppositeFar - outer * verge;
     const kind = stretch(number);
     if (kind === 2) {
-      this.walls.setMatrixAt(this.walls.count++, at(x, outerPaved + outer * 1.25, 0));
+      this.walls.setMatrixAt(this.walls.count++, at(x, outerBarrier + outer * 1.25, 0));
     }
     if (x > this.reach) return;
-    this.wood(number, x, outerPaved + outer * (kind === 2 ? 6 : 5), outer, kind);
-    this.wood(number + 7919, x, oppositeFar - outer * 5, -outer, stretch(number + 40) === 0 ? 0 : 1);
+    this.wood(number, x, outerBarrier + outer * (kind === 2 ? 6 : 5), outer, kind);
+    this.wood(number + 7919, x, far - outer * 5, -outer, stretch(number + 40) === 0 ? 0 : 1);
   }
 
   wood(seed, x, y, side, kind) {
@@ -196,11 +195,11 @@ class Stretches {
 
 /** A sound wall of one stretch, 3 m high, with panels of 4 m. */
 function wallGeometry() {
-  const corners = [[0, 0, -0.2], [PERIOD, 0, -0.2], [PERIOD, 0, 2.9], [0, 0, 2.9]];
-  const geometry = quad(corners, "#ffffff", true);
+  const geometry = new PlaneGeometry(PERIOD, 3.1, PERIOD / 5, 1);
   const { uv } = geometry.attributes;
   for (let n = 0; n < uv.count; n++) uv.setX(n, (uv.getX(n) * PERIOD) / 4);
-  return geometry;
+  geometry.applyMatrix4(new Matrix4().makeRotationX(Math.PI / 2));
+  return coloured(geometry.translate(PERIOD / 2, 0, 1.35), "#ffffff");
 }
 
 /**

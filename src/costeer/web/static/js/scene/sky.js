@@ -17,8 +17,8 @@ const RADIUS = 4000;
 const ZENITH = new Color("#4a86c5");
 const MIDDLE = new Color("#8fb9dd");
 
-function dome() {
-  const geometry = new SphereGeometry(RADIUS, 32, 64).applyMatrix4(
+function dome(low) {
+  const geometry = new SphereGeometry(RADIUS, low ? 12 : 32, low ? 40 : 64).applyMatrix4(
     new Matrix4().makeRotationX(Math.PI / 2),
   );
   const { position } = geometry.attributes;
@@ -53,14 +53,14 @@ function ridge(seed, degrees, height) {
 }
 
 /** A chain of hills all around, a band from below the horizon up to its ridge. */
-function hills(seed, radius, height, colour) {
+function hills(seed, radius, height, colour, step) {
   const points = [];
   const around = (degrees, z) => {
     const angle = (degrees * Math.PI) / 180;
     return [radius * Math.cos(angle), radius * Math.sin(angle), z];
   };
-  for (let degree = 0; degree < 360; degree += 0.5) {
-    const [a, b] = [degree, degree + 0.5];
+  for (let degree = 0; degree < 360; degree += step) {
+    const [a, b] = [degree, degree + step];
     const low = -0.02 * radius;
     const [za, zb] = [a, b].map((at) => radius * ridge(seed, at % 360, height));
     points.push(around(a, low), around(b, low), around(b, zb));
@@ -136,11 +136,12 @@ function sun() {
 /** The sky, around the origin; it moves with the car and does not turn. */
 export function buildSky(low) {
   const sky = new Group();
+  const step = low ? 1.5 : 0.5;
   const parts = [
-    dome(),
-    hills(61, 3500, 0.075, "#b3c8d6"),
-    hills(62, 3300, 0.055, "#a0b9c6"),
-    hills(63, 3100, 0.034, "#8fabb0"),
+    dome(low),
+    hills(61, 3500, 0.075, "#b3c8d6", step),
+    hills(62, 3300, 0.055, "#a0b9c6", step),
+    hills(63, 3100, 0.034, "#8fabb0", step),
     sun(),
     ...clouds(low ? 12 : 26),
   ];

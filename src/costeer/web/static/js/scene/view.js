@@ -10,6 +10,8 @@ import {
 } from "./eye.js";
 import { Mirrors } from "./mirrors.js";
 import { HAZE, buildSky } from "./sky.js";
+import { Pace } from "./pace.js";
+import { Smoothing } from "./smoothing.js";
 import { Workshop } from "./workshop.js";
 import { World } from "./world.js";
 
@@ -23,6 +25,9 @@ const USUAL_ASPECT = 16 / 9;
 
 /** Part of the depth buffer that the cockpit takes [-]. */
 const NEAR_DEPTH = 0.05;
+
+/** What a graphics card draws of every picture. */
+const FULL = { mirrorsEvery: 1, isSmooth: true };
 
 /** Most pixels that are drawn in low quality; the browser enlarges the picture. */
 const MOST_PIXELS = 640 * 360;
@@ -45,14 +50,26 @@ export class View {
     const workshop = new Workshop(options.low, this.renderer.capabilities.getMaxAnisotropy());
     // Under left-hand traffic the driver sits on the right.
     const inner = hello.road.overtaking_side > 0 ? -1 : 1;
-    this.world = new World(workshop, hello.road, OWN_COLOUR);
+    this.world = new World(workshop, hello, OWN_COLOUR);
     this.cockpit = new Cockpit(workshop, inner, OWN_COLOUR);
     this.mirrors = new Mirrors(workshop, options.mirrors, inner);
     this.setUpCockpit(workshop);
+    this.smoothing = options.low ? new Smoothing() : null;
+    this.pace = options.low ? new Pace() : null;
+    this.drawn = 0;
     if (!options.low) this.reflectSky();
     this.setUpScreens(inner);
-    new ResizeObserver(() => this.resize()).observe(parent);
+    this.observer = new ResizeObserver(() => this.resize());
+    this.observer.observe(parent);
     this.resize();
+  }
+
+  /** Make room for another view. */
+  close() {
+    this.observer.disconnect();
+    this.renderer.domElement.remove();
+    this.renderer.dispose();
+    this.renderer.forceContextLoss();
   }
 
   setUpCockpit(workshop) {
@@ -121,18 +138,7 @@ export class View {
    */
   update(columns, state) {
     const value = (name) => columns.finite(state, name);
-    const time = value("time");
-    this.world.update({
-      position: value("longitudinal_position"),
-      lateral: value("lateral_position"),
-      yaw: value("yaw_angle"),
-      leader: {
-        distance: columns.value(state, "lead_distance"),
-        lane: columns.value(state, "lead_lane"),
-        velocity: value("lead_velocity"),
-        time,
-      },
-    });
+    this.world.update((name) => columns.value(state, name));
     this.cockpit.update({
       angle: value("steering_wheel_angle"),
       speed: value("longitudinal_velocity"),
@@ -150,7 +156,8 @@ export class View {
     const { renderer } = this;
     const context = renderer.getContext();
     context.depthRange(0, 1);
-    this.mirrors.render(renderer, this.world.scene);
+    const { mirrorsEvery, isSmooth } = this.pace?.tick(performance.now() / 1000) ?? FULL;
+    if (this.drawn++ % mirrorsEvery === 0) this.mirrors.render(renderer, this.world.scene);
     const width = this.size.width / this.screens.length;
     renderer.setScissorTest(this.screens.length > 1);
     this.screens.forEach(({ outside, inside }, n) => {
@@ -162,5 +169,7 @@ export class View {
       context.depthRange(NEAR_DEPTH, 1);
       renderer.render(this.world.scene, outside);
     });
+    context.depthRange(0, 1);
+    if (isSmooth) this.smoothing?.apply(renderer, this.size);
   }
 }

@@ -14,9 +14,12 @@ export class Workshop {
   /**
    * @param {boolean} low
    * @param {number} sharpness highest anisotropy of textures
+   * @param {import("./course.js").Course|null} course along which all is bent, if it is
    */
-  constructor(low, sharpness) {
+  constructor(low, sharpness, course = null) {
     this.low = low;
+    this.course = course;
+    this.kept = new Map();
     /** Anisotropy of textures on the ground; without a graphics card each step costs. */
     this.sharpness = low ? 1 : sharpness;
     this.roadSharpness = low ? 2 : sharpness;
@@ -25,8 +28,22 @@ export class Workshop {
   /** A mesh of coloured geometry; it may carry a texture. */
   mesh(geometry, settings = {}) {
     const look = this.thrifty({ vertexColors: true, ...settings });
-    if (!this.low) return new Mesh(geometry, new MeshLambertMaterial(look));
-    return new Mesh(shaded(geometry), new MeshBasicMaterial(look));
+    if (!this.low) return this.laid(new Mesh(geometry, new MeshLambertMaterial(look)));
+    return this.laid(new Mesh(shaded(geometry), new MeshBasicMaterial(look)));
+  }
+
+  /** A mesh along the road, where that bends: nobody knows beforehand where it will be. */
+  laid(mesh) {
+    if (!this.course || this.course.isStraight) return mesh;
+    this.course.bend(mesh.material);
+    mesh.frustumCulled = false;
+    return mesh;
+  }
+
+  /** What is built once and used by many. */
+  once(name, build) {
+    if (!this.kept.has(name)) this.kept.set(name, build());
+    return this.kept.get(name);
   }
 
   /** Many of one kind: room for a number of copies, of which none is shown yet. */
