@@ -19,7 +19,8 @@ import numpy as np
 from costeer.loop.scenario import TrialSetup
 from costeer.loop.trial import simulate_trial
 from costeer.records.columns import TrialRecord
-from costeer.scenarios.reading import scenario_named, speed_of
+from costeer.scenarios.definition import speed_of
+from costeer.scenarios.reading import scenario_named
 from costeer.study.crossings import Crossing, within
 from costeer.study.detection import FALSE, Detection, detect, lead_time
 from costeer.study.lanes import adjacent_side

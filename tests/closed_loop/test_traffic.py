@@ -22,7 +22,8 @@ from costeer.plant.alignment import alignment
 from costeer.plant.fleet import KINDS, SLOTS
 from costeer.plant.place import BARRIER
 from costeer.plant.stretches import Stretch, stretches
-from costeer.records.columns import COLUMNS, TrialRecord, car_columns
+from costeer.records.cars import car_columns
+from costeer.records.columns import COLUMNS, TrialRecord
 from costeer.records.row import ROW_COLUMNS
 from costeer.scenarios.definition import (
     Actor,

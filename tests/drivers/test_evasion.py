@@ -15,8 +15,8 @@ from costeer.drivers.evasion import EvasionParameters, EvasionState
 from costeer.drivers.population import participant_driver
 from costeer.loop.scenario import TrialSetup
 from costeer.loop.trial import simulate_trial
-from costeer.plant.fleet import Neighbours
 from costeer.plant.following import Ahead, LaneOutlook
+from costeer.plant.outlook import Neighbours
 from costeer.plant.parameters import DEFAULT_CAR
 from costeer.plant.place import BARRIER
 from costeer.records.columns import TrialRecord

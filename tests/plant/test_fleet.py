@@ -21,16 +21,14 @@ from costeer.plant.fleet import (
     Fleet,
     FleetParameters,
     Order,
-    Spot,
     fleet_parameters,
     initial_fleet,
-    neighbours,
-    outlook,
     with_ego,
     write_cars,
 )
 from costeer.plant.fleet_motion import World, moved
 from costeer.plant.following import LONGEST_GAP, FollowingParameters
+from costeer.plant.outlook import Spot, neighbours, outlook
 from costeer.plant.parameters import RoadParameters
 
 DT = 1.0 / 20.0

@@ -319,6 +319,31 @@ def brake(
 
 
 @compiled
+def acted(
+    parameters: DriverParameters,
+    state: DriverState,
+    knowledge: Knowledge,
+    measurement: Measurement,
+    command: ArmCommand,
+) -> Action:
+    """What the driver does until the next step, from the state after this one."""
+    decided, wanted = state.decision, state.longitudinal.wanted_acceleration
+    return Action(
+        arm=command,
+        pedals=longitudinal.pedals(
+            knowledge.car, wanted, measurement.longitudinal_velocity
+        ),
+        head_yaw=gaze.head_yaw(parameters.gaze, state.gaze),
+        intention=decision.direction(decided, knowledge.road.overtaking_side),
+        at_home=decided.phase == decision.CRUISING,
+        plan=Plan(
+            change_duration=decided.change_duration,
+            time_to_crossing=decision.time_to_crossing(decided),
+        ),
+    )
+
+
+@compiled
 def act(
     parameters: DriverParameters,
     state: DriverState,
@@ -371,16 +396,4 @@ def act(
         longitudinal=foot,
         evasion=evaded,
     )
-    return new_state, Action(
-        arm=command,
-        pedals=longitudinal.pedals(
-            knowledge.car, foot.wanted_acceleration, measurement.longitudinal_velocity
-        ),
-        head_yaw=gaze.head_yaw(parameters.gaze, head),
-        intention=direction,
-        at_home=decided.phase == decision.CRUISING,
-        plan=Plan(
-            change_duration=decided.change_duration,
-            time_to_crossing=decision.time_to_crossing(decided),
-        ),
-    )
+    return new_state, acted(parameters, new_state, knowledge, measurement, command)

@@ -168,6 +168,22 @@ def _median(values: Sequence[float], factor: float = 1.0, digits: int = 2) -> st
     return f"{np.median(known):.{digits}f}" if known else "–"
 
 
+_DEGREES = 180.0 / np.pi
+
+_BEHAVIOUR = (
+    ("reaction_time", "Reaction [s]", 1.0, 2),
+    ("smallest_distance", "Smallest distance [m]", 1.0, 2),
+    ("smallest_time", "Smallest time [s]", 1.0, 2),
+    ("peak_wheel_angle", "Peak angle [°]", _DEGREES, 0),
+    ("peak_wheel_rate", "Peak rate [°/s]", _DEGREES, 0),
+    ("peak_driver_torque", "Peak torque [N·m]", 1.0, 1),
+    ("haptic_gain", "Gain at appearance", 1.0, 2),
+    ("gain_at_obstacle", "Gain at obstacle", 1.0, 2),
+    ("time_to_settle", "Settled after [s]", 1.0, 1),
+)
+"""Columns of the table: measure, heading, factor and digits."""
+
+
 def _behaviour_table(rows: Rows) -> Table:
     cells = []
     for name in conditions_of(rows):
@@ -175,43 +191,19 @@ def _behaviour_table(rows: Rows) -> Table:
             own = [
                 r for r in rows if (r.condition, r.meant_situation) == (name, number)
             ]
-            if not own:
-                continue
-            degrees = 180.0 / np.pi
-            cells.append(
-                (
-                    name,
-                    f"({number})",
-                    _median([r.reaction_time for r in own]),
-                    _median([r.smallest_distance for r in own]),
-                    _median([r.smallest_time for r in own]),
-                    _median([r.peak_wheel_angle for r in own], degrees, 0),
-                    _median([r.peak_wheel_rate for r in own], degrees, 0),
-                    _median([r.peak_driver_torque for r in own], 1.0, 1),
-                    _median([r.haptic_gain for r in own]),
-                    _median([r.gain_at_obstacle for r in own]),
-                    f"{sum(r.left_road for r in own)} of {len(own)}",
-                    _median([r.time_to_settle for r in own], 1.0, 1),
-                )
-            )
+            if own:
+                medians = [
+                    _median([getattr(r, measure) for r in own], factor, digits)
+                    for measure, _, factor, digits in _BEHAVIOUR
+                ]
+                outside = f"{sum(r.left_road for r in own)} of {len(own)}"
+                cells.append((name, f"({number})", *medians, outside))
+    headings = [heading for _, heading, _, _ in _BEHAVIOUR]
     return Table(
         name="behaviour-table",
         title="Medians over drives",
         note="A driver who never settled has no time to settle.",
-        header=(
-            "Condition",
-            "Situation",
-            "Reaction [s]",
-            "Smallest distance [m]",
-            "Smallest time [s]",
-            "Peak angle [°]",
-            "Peak rate [°/s]",
-            "Peak torque [N·m]",
-            "Gain at appearance",
-            "Gain at obstacle",
-            "Over the outer line",
-            "Settled after [s]",
-        ),
+        header=("Condition", "Situation", *headings, "Over the outer line"),
         rows=tuple(cells),
         num_labels=2,
     )

@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from costeer.records.columns import CAR_SIGNALS
+from costeer.records.cars import CAR_SIGNALS
 from costeer.study.definitions import (
     Columns,
     MeasureParameters,

@@ -10,8 +10,9 @@ from numpy.typing import NDArray
 
 from costeer.plant.fleet import MOST_CARS
 from costeer.records.adaptation import AS_IT_IS, Adaptation, adapted, cleaned
+from costeer.records.cars import car_columns
 from costeer.records.checks import converted
-from costeer.records.columns import COLUMNS_BY_NAME, Column, car_columns
+from costeer.records.columns import COLUMNS_BY_NAME, Column
 from costeer.records.names import empty_told, groups
 from costeer.records.times import no_time
 from costeer.study.definitions import Columns
