@@ -16,12 +16,14 @@ from costeer.loop.events import (
     place_of,
     with_car,
 )
-from costeer.loop.scenario import TrialSetup
+from costeer.loop.person import PersonHeld, PersonMotion, initial_motion
+from costeer.loop.real_wheel import WheelInput, wheel_step
+from costeer.loop.scenario import TrialSetup, loop_parameters
 from costeer.loop.trial import simulate_trial
 from costeer.plant.fleet import CARS, CarKind, FleetParameters, fleet_parameters
 from costeer.plant.fleet import Car as CarState
 from costeer.plant.parameters import DEFAULT_CAR, RoadParameters
-from costeer.plant.place import BARRIER, CAR, NO_CONTACT, STRIP
+from costeer.plant.place import BARRIER, CAR, NO_CONTACT, STRIP, Place
 from costeer.plant.stretches import NOTHING_HAPPENS, Stretch, stretches
 from costeer.records.columns import TrialRecord
 from costeer.scenarios.definition import Actor, Event, Road, Scenario, When
@@ -51,8 +53,8 @@ def test_in_its_lane_on_an_empty_road_the_car_touches_nothing() -> None:
 @pytest.mark.parametrize("side", [1.0, -1.0])
 def test_strip_and_barrier_lie_on_both_sides(side: float) -> None:
     start = initial_events(NOBODY)
-    line = 3.5 if side > 0.0 else 3.5 - side * 0.0
-    middle = -1.75  # of the road; its outer lines are 3.5 m away
+    line = 3.5
+    middle = -1.75  # of the road; its outer lines are 3.5 m away on either side
     for beyond, contact in ((0.05, NO_CONTACT), (0.3, STRIP), (1.0, NO_CONTACT)):
         lateral = middle + side * (line + beyond - WIDTH / 2.0)
         assert touched(start, lateral=lateral) == contact
@@ -214,3 +216,32 @@ def test_something_that_lies_on_the_road_is_hit_where_it_lies() -> None:
     seen = np.flatnonzero(np.isfinite(gap))
     assert gap[seen[0]] - outline == pytest.approx(0.2 * 20.0, abs=20.01 / 60.0)
     assert len(seen) == pytest.approx(0.2 * 60.0, abs=2.0)
+
+
+def person(place: Place) -> tuple[PersonMotion, float]:
+    """A real wheel, held straight, one plant step later."""
+    parameters = loop_parameters(TrialSetup(driver="hands-off", intention="off"))
+    held = PersonHeld(0.0, 0.0, torque_command=0.0, drive_command=0.0, place=place)
+    wheel = WheelInput(0.0, 0.0, 0.0, damping=0.0, friction=0.0)
+    return wheel_step(parameters, initial_motion(parameters), held, wheel)
+
+
+@pytest.mark.parametrize("rumble", [0.6, -0.6])
+def test_a_real_wheel_gives_the_strips_torque_and_no_more(rumble: float) -> None:
+    motion, torque = person(Place(rumble=rumble))
+    calm, nothing = person(Place())
+    position = motion.plant.world.vehicle.longitudinal_position
+    # A groove goes from -1 over 1 to -1 within 0.6 m, evenly.
+    share = position / 0.6 % 1.0
+    expected = rumble * (4.0 * min(share, 1.0 - share) - 1.0)
+    assert torque - nothing == pytest.approx(expected)
+    assert abs(torque - nothing) <= 0.6
+    assert motion.plant.world == calm.plant.world
+
+
+def test_with_a_real_wheel_wind_and_collisions_act_on_the_car() -> None:
+    blown, _ = person(Place(side_force=1500.0))
+    assert blown.plant.world.vehicle.lateral_velocity > 0.0
+    stopped, _ = person(Place(stopped=True))
+    assert stopped.plant.world.vehicle.longitudinal_velocity == 0.0
+    assert stopped.plant.world.vehicle.longitudinal_position == 0.0
