@@ -125,12 +125,29 @@ async function lacksDevice() {
   return !devices.some(({ kind }) => kind === "audiooutput");
 }
 
+/** What was chosen last time; a browser may keep nothing. */
+function remembered() {
+  try {
+    return JSON.parse(localStorage.getItem(KEPT_UNDER)) ?? {};
+  } catch {
+    return {};
+  }
+}
+
+function remember(chosen) {
+  try {
+    localStorage.setItem(KEPT_UNDER, JSON.stringify(chosen));
+  } catch {
+    // It holds for this page alone.
+  }
+}
+
 export class Sound {
   /**
    * @param {{isMuted?: boolean, make?: () => AudioContext, lacks?: () => Promise<boolean>}} options
    */
   constructor({ isMuted = false, make = () => new AudioContext(), lacks = lacksDevice } = {}) {
-    const kept = JSON.parse(globalThis.localStorage?.getItem(KEPT_UNDER) ?? "{}");
+    const kept = remembered();
     this.volume = Number.isFinite(kept.volume) ? kept.volume : 0.6;
     this.isMuted = isMuted || kept.isMuted === true;
     this.make = make;
@@ -145,15 +162,19 @@ export class Sound {
     if (this.graph || this.isWaking) return;
     this.isWaking = true;
     if (await this.lacks().catch(() => false)) return; // for good: there is nothing to hear
-    this.graph = new Graph(this.make());
-    await this.graph.context.resume();
-    this.apply();
+    try {
+      this.graph = new Graph(this.make());
+      await this.graph.context.resume();
+      this.apply();
+    } catch (error) {
+      console.warn(`no sound: ${error.message}`);
+      this.graph = null;
+    }
   }
 
   apply() {
     if (this.graph) this.graph.glide(this.graph.master.gain, this.isMuted ? 0 : this.volume);
-    const kept = { volume: this.volume, isMuted: this.isMuted };
-    globalThis.localStorage?.setItem(KEPT_UNDER, JSON.stringify(kept));
+    remember({ volume: this.volume, isMuted: this.isMuted });
     return this.told;
   }
 
