@@ -334,3 +334,16 @@ def test_rows_say_where_cars_are_that_are_on_the_road() -> None:
     write_cars(row, 2, fleet)
     np.testing.assert_allclose(row[:5], [7.0, 7.0, 60.0 + 20.0 * DT, -3.5, 20.0])
     assert np.isnan(row[5:]).all()
+
+
+def test_a_second_lane_change_begins_where_the_car_is() -> None:
+    orders = [
+        Order(float(AT_TIME), time, lane=to) for time, to in ((0.5, 0.0), (3.0, 1.0))
+    ]
+    kind = there(80.0, first=orders[0], second=orders[1])
+    history = drive(fleet_parameters([kind]), 8.0)
+    lateral = np.array([cars[1].lateral for cars in history])
+    # Turned back half-way, without a jump: never faster than a whole change is.
+    assert -3.5 < lateral.min() < -1.0
+    assert np.abs(np.diff(lateral)).max() <= 1.875 * 3.5 / 4.5 * DT * 1.01
+    assert lateral[-1] == pytest.approx(0.0, abs=1e-12)
