@@ -23,6 +23,7 @@ PROMISED = {
     "Predictor",
     "ReadingWarning",
     "Record",
+    "Scenario",
     "compiled",
     "evaluate",
     "fit_driver",
