@@ -142,3 +142,11 @@ def test_old_records_were_driven_on_the_papers_road() -> None:
     (crossing,) = prepared(old).segments.crossings  # type: ignore[union-attr]
     assert crossing.lane == 0
     assert found.measures["num_lane_changes"].value == 1
+
+
+def test_sdlp_over_two_lanes_is_about_the_centre_of_each() -> None:
+    columns = changing([(27.0, -1)])
+    columns["lateral_position"] += 0.3 * np.sin(2 * pi * 0.2 * columns["time"])
+    found = measured(columns).measures
+    assert found["num_lane_changes"].value == 1
+    assert found["sdlp"].value == pytest.approx(0.3 / sqrt(2), rel=0.05)
