@@ -13,8 +13,9 @@ BASE := pyproject.toml requirements/build.in
 # Bytecode is kept, whatever the caller's habit: rewriting 5,000 asserts takes a worker
 # half a minute.
 PYTEST := PYTHONDONTWRITEBYTECODE= $(BIN)/python -m pytest
-# A file stays in one worker: what its tests share is made once.
-WORKERS_BY_FILE := -n $(WORKERS) --dist loadfile
+# A file stays in one worker: what its tests share is made once. Files keep the order
+# that tests/conftest.py gives them, which xdist would change.
+WORKERS_BY_FILE := -n $(WORKERS) --dist loadfile --no-loadscope-reorder
 SEED ?=
 
 export UV_PYTHON_DOWNLOADS = never

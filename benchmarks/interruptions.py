@@ -4,12 +4,12 @@
 
 Runs a small study (2 participants, three conditions, 1.8 km, scripted intention)
 whole, then again and again with SIGINT, SIGTERM or SIGKILL at STUDIES (30) random
-moments, each time resumed, and compares every byte of the results. Then DRIVES (12)
-drives on the simulated wheel, with the network, of which loop, network, server or
-watchdog is killed while the wheel pushes: the record must be readable up to the last
-quarter of a second, the torque zero, and no process left. Exit code 1 if anything is
-lost. POSIX alone has these signals. Commit nothing meanwhile: records name the
-revision.
+moments, each time resumed, and compares every byte of what is there after each stop
+and of the results. Then DRIVES (12) drives on the simulated wheel, with the network, of
+which loop, network, server or watchdog is killed while the wheel pushes: the record
+must be readable up to the last quarter of a second, the torque zero, and no process
+left. Exit code 1 if anything is lost. POSIX alone has these signals. Commit and edit
+nothing meanwhile: records name the revision, and it would stop.
 """
 
 from __future__ import annotations
@@ -33,6 +33,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from costeer.base.entry import source_hash
 from costeer.devices.wheels.simulated import SpringHands
 from costeer.records.record import read_record, read_stream
 from costeer.runtime.drive import Drive, Listener
@@ -40,6 +41,7 @@ from costeer.runtime.frame import PLACE
 from costeer.runtime.recorder import INTERVAL
 from costeer.runtime.shared import close_shared, open_shared
 from costeer.runtime.states import Loss, RunState
+from costeer.study.folder import LOCK_FILE
 from tests.runtime.rig import wheel_setup
 from tests.runtime.test_processes import is_running
 from tests.study.fakes import contents
@@ -51,6 +53,9 @@ STUDY = ("--participants", "2", "--conditions", "manual,strong-rapid,weak-gentle
 STUDY += ("--intention", "scripted", "--length", "1800", "--jobs", "1")
 SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGKILL)
 LONGEST_RUN = 1800.0
+MOST_A_STUDY = 3
+"""Interruptions of one study."""
+
 VICTIMS = ("loop", "network", "server", "watchdog")
 PUSH = 0.3
 """Torque under which a process is killed [N·m]."""
@@ -68,7 +73,7 @@ class Studies(NamedTuple):
     Attributes:
         signals: Interruptions by signal.
         finished: Studies that were resumed to their end.
-        changed: Those of them with another byte than the whole one.
+        changed: Files with another byte than in the study that ran whole.
         lost: Finished trials that were gone or simulated again.
         tracebacks: Runs that ended in one.
     """
@@ -100,10 +105,19 @@ def finished_trials(out: Path) -> set[tuple[str, int, int]]:
     return {(name, fact.st_ino, fact.st_mtime_ns) for name, fact in facts}
 
 
-def differing(some: dict[str, bytes], others: dict[str, bytes]) -> list[str]:
-    """Names of the files that are not the same, or in one of two folders alone."""
-    names = sorted(some.keys() | others.keys())
-    return [name for name in names if some.get(name) != others.get(name)]
+def changed_files(out: Path, whole: dict[str, bytes], is_finished: bool) -> list[str]:
+    """Names of the files that are not as in the whole study.
+
+    Args:
+        out: A study.
+        whole: What the whole study holds.
+        is_finished: Whether a file may neither lack nor be half written.
+    """
+    found = contents(out)
+    if not is_finished:
+        found = {n: b for n, b in found.items() if not n.endswith((".tmp", LOCK_FILE))}
+    names = found.keys() | whole.keys() if is_finished else found.keys()
+    return sorted(name for name in names if found.get(name) != whole.get(name))
 
 
 class Interrupter:
@@ -119,33 +133,70 @@ class Interrupter:
         self._draw = random.Random(SEED)
         self._signals: Counter[str] = Counter()
         self._finished = self._changed = self._lost = self._tracebacks = 0
+        self._whole: dict[str, bytes] = {}
 
     def run(self) -> Studies:
-        """Interrupt and resume until there were enough."""
-        began = time.monotonic()
-        assert self._runs(self._folder / "whole", LONGEST_RUN) == 0
-        longest = time.monotonic() - began
-        whole = contents(self._folder / "whole")
+        """Interrupt and resume until there were enough.
+
+        Raises:
+            SystemExit: If the sources were changed meanwhile.
+        """
+        sources = revision_now(), source_hash(ROOT / "src" / "costeer")
+        longest = self._run_whole()
         while self._signals.total() < self._number:
-            out = self._folder / f"study-{self._finished}"
-            while self._runs(out, self._moment(longest)) != 0:
-                pass
+            self._interrupt_one(self._folder / f"study-{self._finished}", longest)
             self._finished += 1
-            if others := differing(contents(out), whole):
-                self._changed += 1
-                print(f"not as in the whole study: {', '.join(others)}", flush=True)
+            if (revision_now(), source_hash(ROOT / "src" / "costeer")) != sources:
+                raise SystemExit("the sources were changed meanwhile; run it again")
         return Studies(
             self._signals, self._finished, self._changed, self._lost, self._tracebacks
         )
 
-    def _moment(self, longest: float) -> float:
-        """When to interrupt the next run [s]; not any more if there were enough."""
-        enough = self._signals.total() >= self._number
-        return LONGEST_RUN if enough else self._draw.uniform(0.0, longest)
+    def _run_whole(self) -> float:
+        """Run twice without interruption; return how long the second worked [s]."""
+        for name in ("whole", "again"):  # the first may have to compile
+            code, seconds = self._runs(self._folder / name, LONGEST_RUN)
+            assert code == 0
+            print(f"uninterrupted study: {seconds:.1f} s", flush=True)
+            self._whole = self._whole or contents(self._folder / name)
+            self._compare(self._folder / name, is_finished=True)
+        return seconds
 
-    def _runs(self, out: Path, moment: float) -> int:
-        """Run until a moment [s]; return the exit code."""
+    def _interrupt_one(self, out: Path, longest: float) -> None:
+        """Interrupt a study three times and let it end."""
+        for _ in range(MOST_A_STUDY):
+            # Trials take the first part of a run: squares are small more often.
+            moment = longest * self._draw.random() ** 2
+            if self._signals.total() == self._number or self._runs(out, moment)[0] == 0:
+                break
+            self._compare(out, is_finished=False)
+            kept = len(finished_trials(out))
+            print(
+                f"{self._signals.total()} of {self._number}: stopped after "
+                f"{moment:.1f} s of work, {kept} trials kept",
+                flush=True,
+            )
+        code, seconds = self._runs(out, LONGEST_RUN)
+        assert code == 0
+        print(f"study {self._finished + 1} ended after {seconds:.1f} s", flush=True)
+        self._compare(out, is_finished=True)
+
+    def _compare(self, out: Path, is_finished: bool) -> None:
+        """Count and name the files that are not as in the whole study."""
+        names = changed_files(out, self._whole, is_finished)
+        self._changed += len(names)
+        if names:
+            print(f"not as in the whole study: {', '.join(names)}", flush=True)
+
+    def _runs(self, out: Path, moment: float) -> tuple[int, float]:
+        """Run, and interrupt the work after a moment [s].
+
+        Returns:
+            Exit code, and seconds of work, from when the study holds its folder.
+        """
         before, process = finished_trials(out), started(out)
+        wait_until_held(out, process)
+        began = time.monotonic()
         try:
             _, told = process.communicate(timeout=moment)
         except subprocess.TimeoutExpired:
@@ -157,7 +208,24 @@ class Interrupter:
                 self._signals[how.name] += 1
         self._lost += len(before - finished_trials(out))
         self._tracebacks += "Traceback" in told
-        return process.returncode
+        return process.returncode, time.monotonic() - began
+
+
+def wait_until_held(out: Path, process: subprocess.Popen[str]) -> None:
+    """Wait until a process works in a study's folder, or has ended."""
+    while process.poll() is None:
+        with suppress(OSError):
+            if f"process {process.pid} " in (out / LOCK_FILE).read_text():
+                return
+        time.sleep(0.005)
+
+
+def revision_now() -> str:
+    """Revision of the checkout, which records name."""
+    words = ["git", "rev-parse", "HEAD"]
+    return subprocess.run(
+        words, cwd=ROOT, capture_output=True, text=True, check=False
+    ).stdout
 
 
 # Drives
@@ -278,7 +346,7 @@ def tell_studies(number: int) -> bool:
     by_signal = ", ".join(f"{n} {name}" for name, n in sorted(found.signals.items()))
     print(
         f"studies: {found.signals.total()} interruptions ({by_signal}) of "
-        f"{found.finished} studies; {found.changed} changed a byte, {found.lost} "
+        f"{found.finished} studies; {found.changed} files changed, {found.lost} "
         f"finished trials lost, {found.tracebacks} tracebacks",
         flush=True,
     )

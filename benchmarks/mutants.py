@@ -5,9 +5,9 @@
 Takes NUMBER (60) places at random of the torque guard, the watchdog, the loop of a
 drive, the limits, the verdict and the server's checks (or of these FILEs alone),
 changes one thing in each (a comparison, an operator, a number, min or max, and or or, a
-flag), and runs the tests of that file. Prints what survived and the score; changes that
-nobody can observe are told apart, with the reason, and do not count. Exit code 1 below
-95 %.
+flag), and runs the tests of that file. Prints what became of each, and the score;
+changes that nobody can observe are told apart, with the reason, and do not count. Exit
+code 1 below 95 %.
 """
 
 from __future__ import annotations
@@ -220,9 +220,9 @@ def main() -> int:
                 print(f"cannot be observed: {about}: {why}", flush=True)
                 continue
             counted += 1
-            if survives(mutant, package):
-                alive += 1
-                print(f"survived: {about}", flush=True)
+            lives = survives(mutant, package)
+            alive += lives
+            print(f"{'survived' if lives else 'noticed'}: {about}", flush=True)
     score = 1.0 - alive / counted
     print(f"{counted} counted, {alive} survived: {score:.0%} noticed")
     return int(score < WANTED)

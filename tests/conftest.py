@@ -9,6 +9,7 @@ import signal
 from collections import defaultdict
 from contextlib import suppress
 from pathlib import Path
+from typing import Any
 
 import pytest
 from filelock import FileLock
@@ -97,6 +98,29 @@ def pytest_collection_modifyitems(
     items[:] = [
         item for file in shuffled for item in draw.sample(files[file], len(files[file]))
     ]
+
+
+SHARED = {
+    "tests/study/test_figures.py": "drawn study",
+    "tests/study/test_report.py": "drawn study",
+}
+"""Files that share what is made once for a whole session, and by what name."""
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> Any:
+    """Give files that share something dear to the same worker.
+
+    Any: of xdist, which need not be installed.
+    """
+    from xdist.scheduler import LoadFileScheduling
+
+    class BySharing(LoadFileScheduling):
+        def _split_scope(self, nodeid: str) -> str:
+            file = super()._split_scope(nodeid)
+            return SHARED.get(file, file)
+
+    return BySharing(config, log) if config.getoption("dist") == "loadfile" else None
 
 
 def compile_once() -> None:

@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     from costeer.records.columns import Column
     from costeer.records.columns import TrialRecord as Record
     from costeer.records.record import write_record
+    from costeer.scenarios.definition import Scenario
 
 moved.install()
 
@@ -44,6 +45,7 @@ __all__ = [
     "Predictor",
     "ReadingWarning",
     "Record",
+    "Scenario",
     "__version__",
     "compiled",
     "evaluate",
@@ -70,6 +72,7 @@ _PLACES = {
     "Predictor": "intention.predictors.interface:Predictor",
     "ReadingWarning": "api.recordings:ReadingWarning",
     "Record": "records.columns:TrialRecord",
+    "Scenario": "scenarios.definition:Scenario",
     "compiled": "base.array:compiled",
     "evaluate": "api.people:evaluate",
     "fit_driver": "api.people:fit_driver",

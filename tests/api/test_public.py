@@ -79,7 +79,14 @@ def test_a_name_that_does_not_exist_is_an_attribute_error() -> None:
         _ = costeer.simulat  # type: ignore[attr-defined]  # that is the point
 
 
-@pytest.mark.parametrize("name", NAMES)
+LONG = ("evaluate", "fit_driver")
+"""Examples that take seconds of what quick tests of their rooms do as well."""
+
+
+@pytest.mark.parametrize(
+    "name",
+    [pytest.param(n, marks=pytest.mark.slow) if n in LONG else n for n in NAMES],
+)
 def test_each_public_name_has_an_example_that_runs(name: str) -> None:
     text = inspect.getdoc(public(name)) or ""
     assert "Example:" in text

@@ -86,7 +86,7 @@ def test_a_driver_of_a_file_drives(tmp_path: Path) -> None:
 
 
 def test_every_drawn_driver_can_be_written_and_read(tmp_path: Path) -> None:
-    for driver in costeer.population(100):
+    for driver in costeer.population(25):
         write_driver(tmp_path / "driver.yaml", driver, {})
         assert read_driver(tmp_path / "driver.yaml") == driver
 

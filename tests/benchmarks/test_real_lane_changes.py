@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import cache
+
 import numpy as np
 import pytest
 from numpy.typing import NDArray
@@ -14,7 +16,12 @@ from costeer.training.tuning import DEFAULTS
 from tests.training.synthetic import drive
 
 MOTION = ("head_yaw", "steering_wheel_angle")
-PEOPLE = [lacking(drive(driver, num_changes=2), MOTION) for driver in range(8)]
+
+
+@cache
+def people() -> list[Recording]:
+    """Eight people, without the signals of motion."""
+    return [lacking(drive(driver, num_changes=2), MOTION) for driver in range(8)]
 
 
 def test_nobody_is_judged_by_what_learned_from_him() -> None:
@@ -31,9 +38,9 @@ def test_nobody_is_judged_by_what_learned_from_him() -> None:
 
         return predict
 
-    said = transfer.out_of_fold(PEOPLE, 4, 1, learn)
+    said = transfer.out_of_fold(people(), 4, 1, learn)
     assert len(taught) == 4
-    for person, verdicts in zip(PEOPLE, said, strict=True):
+    for person, verdicts in zip(people(), said, strict=True):
         (mark,) = set(verdicts)
         assert person.driver not in taught[int(mark) - 1]
         assert len(verdicts) == len(person.side)
@@ -41,7 +48,7 @@ def test_nobody_is_judged_by_what_learned_from_him() -> None:
 
 def test_the_drivers_to_choose_by_change_lanes() -> None:
     quiet = [lacking(drive(driver, num_changes=0), MOTION) for driver in range(20, 26)]
-    training, choosing = transfer._two_parts([*PEOPLE[:2], *quiet])
+    training, choosing = transfer._two_parts([*people()[:2], *quiet])
     assert transfer._changes_lanes(training)
     assert transfer._changes_lanes(choosing)
     assert transfer._two_parts(quiet) == (quiet, quiet)
@@ -55,7 +62,7 @@ def test_the_network_stands_beside_what_learned_from_people(
     short = DEFAULTS._replace(num_steps=2, batch_size=16)
     monkeypatch.setattr(transfer, "TUNING", short)
     monkeypatch.setattr(transfer, "RIVALS", ("line-time", "head-only"))
-    found = transfer.transfer(random_weights(3, seed=1), PEOPLE, seed=1, num_folds=2)
+    found = transfer.transfer(random_weights(3, seed=1), people(), seed=1, num_folds=2)
     names = [one.name for one in found.judged]
     assert names == ["line-time", "gru", "logistic-people", "gru-people"]
     assert [one.name for one in found.excluded] == ["head-only"]

@@ -24,19 +24,27 @@ TINY = StudySettings(
 
 
 @pytest.fixture(scope="module")
-def whole(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A study with its report."""
-    folder = tmp_path_factory.mktemp("whole") / "study"
+def simulated(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A study with its tables."""
+    folder = tmp_path_factory.mktemp("simulated") / "study"
+    run_study(folder, TINY, jobs=1, report=None, simulate=made_up)
+    return folder
+
+
+@pytest.fixture(scope="module")
+def whole(simulated: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The same with its report."""
+    folder = shutil.copytree(simulated, tmp_path_factory.mktemp("whole") / "study")
     run_study(folder, TINY, jobs=1, simulate=made_up)
     return folder
 
 
 @pytest.fixture
-def bare(whole: Path, tmp_path: Path) -> Path:
+def bare(simulated: Path, tmp_path: Path) -> Path:
     """The same with nothing but settings and records."""
     (tmp_path / "study").mkdir()
-    shutil.copy(whole / "study.yaml", tmp_path / "study")
-    shutil.copytree(whole / "records", tmp_path / "study" / "records")
+    shutil.copy(simulated / "study.yaml", tmp_path / "study")
+    shutil.copytree(simulated / "records", tmp_path / "study" / "records")
     return tmp_path / "study"
 
 

@@ -11,8 +11,8 @@ from costeer.cli.trial_summary import number, print_summary
 from costeer.records.record import read_record, write_record
 from tests.study.synthetic import synthetic_record
 
-# 200 m take 10 s; the Python engine needs no compilation.
-SHORT = ["--length", "200", "--engine", "python", "--intention", "scripted"]
+# 100 m take 5 s; the Python engine needs no compilation.
+SHORT = ["--length", "100", "--engine", "python", "--intention", "scripted"]
 
 
 def simulate(out: Path, *options: str) -> int:
@@ -32,10 +32,14 @@ def test_a_trial_leaves_its_record_and_a_summary(
     assert shown.endswith(f"{out}\n")
 
 
-def test_the_same_options_give_the_same_bytes(tmp_path: Path) -> None:
+def test_the_same_options_give_the_same_bytes_and_others_replace_them(
+    tmp_path: Path,
+) -> None:
     first, second = tmp_path / "a.parquet", tmp_path / "b.parquet"
-    assert simulate(first) == simulate(second) == 0
+    assert simulate(first, "--seed", "1") == simulate(second, "--seed", "1") == 0
     assert first.read_bytes() == second.read_bytes()
+    assert simulate(second, "--seed", "2") == 0
+    assert read_record(second).metadata["seed"] == 2
 
 
 def test_manual_driving_has_no_guidance(tmp_path: Path) -> None:
@@ -48,17 +52,10 @@ def test_manual_driving_has_no_guidance(tmp_path: Path) -> None:
 def test_the_system_changes_lanes_when_told(tmp_path: Path) -> None:
     out = tmp_path / "t.parquet"
     hands_off = ("--driver", "hands-off", "--no-events", "--initial-offset", "0.3")
-    assert simulate(out, *hands_off, "--trigger-at", "2", "--trigger-at", "9") == 0
+    assert simulate(out, *hands_off, "--trigger-at", "1", "--trigger-at", "4") == 0
     record = read_record(out)
     assert record.columns["lateral_position"][0] == pytest.approx(0.3, abs=0.01)
     assert (record.columns["mode"] == "lane_changing").any()
-
-
-def test_a_simulated_trial_is_replaced(tmp_path: Path) -> None:
-    out = tmp_path / "t.parquet"
-    assert simulate(out, "--seed", "1") == 0
-    assert simulate(out, "--seed", "2") == 0
-    assert read_record(out).metadata["seed"] == 2
 
 
 def test_a_person_s_trial_is_never_replaced(
@@ -147,7 +144,7 @@ def test_a_lane_change_after_the_end_is_told(
     out = tmp_path / "t.parquet"
     assert simulate(out, "--trigger-at", "3", "--trigger-at", "900") == 0
     told = capsys.readouterr().err
-    assert "--trigger-at 900 had no effect: the trial ended after 10." in told
+    assert "--trigger-at 900 had no effect: the trial ended after 5." in told
 
 
 def test_a_count_out_of_range_has_no_unit(

@@ -96,7 +96,12 @@ def test_a_column_mirrors(column: Column) -> None:
 
 
 def test_every_signed_column_is_seen_on_both_sides() -> None:
-    places = [k for k, column in enumerate(COLUMNS) if column.mirrored == "flipped"]
+    # The road is straight; tests/closed_loop/test_curves.py mirrors bends.
+    places = [
+        k
+        for k, column in enumerate(COLUMNS)
+        if column.mirrored == "flipped" and column.name != "road_curvature"
+    ]
     signed = trial(mirrored=False)[:, places]
     assert (signed.min(axis=0) < 0.0).all()
     assert (signed.max(axis=0) > 0.0).all()

@@ -47,6 +47,45 @@ def test_without_an_intention_the_lane_is_kept() -> None:
     assert target[2:6] == (0.0, 0.0, 0.0, 0.0)
 
 
+BEND = 1.0 / 500.0
+
+
+@pytest.mark.parametrize("side", [1.0, -1.0])
+def test_in_a_bend_the_lane_that_is_kept_has_its_own_curvature(side: float) -> None:
+    right = initial_state(ROAD, RIGHT_LANE)
+    bent = sample(
+        lateral_position=-3.5,
+        lane=RIGHT_LANE,
+        road_curvature=side * BEND,
+        road_curvature_slope=side * 1e-5,
+    )
+    _, target = stepped(right, bent)
+    # 3.5 m to the right of the reference line: outside in a left bend.
+    assert target.curvature == pytest.approx(1.0 / (side * 500.0 + 3.5))
+    assert target.curvature_rate == pytest.approx(SPEED * side * 1e-5)
+    assert (target.lateral_position, target.heading) == (-3.5, 0.0)
+
+
+def test_a_path_in_a_bend_begins_without_the_roads_own_turn() -> None:
+    # The car follows its lane: yaw rate v kappa. Along the road its path is straight.
+    bent = sample(road_curvature=BEND, yaw_rate=SPEED * BEND)
+    path = plan_path(PARAMETERS, ROAD, bent, RIGHT_LANE)
+    straight = plan_path(PARAMETERS, ROAD, sample(), RIGHT_LANE)
+    assert path == pytest.approx(straight, abs=1e-15)
+
+
+def test_curvature_of_path_and_road_add_up() -> None:
+    bent = {"road_curvature": BEND, "yaw_rate": SPEED * BEND}
+    state, _ = stepped(KEEPING, sample(**bent), WANTED)
+    for share in (0.2, 0.5, 0.8):
+        place = {"longitudinal_position": share * LENGTH}
+        _, plain = stepped(CHANGING, sample(**place))
+        _, on_road = stepped(state, sample(**place, **bent))
+        line = BEND / (1.0 - BEND * plain.lateral_position)
+        assert on_road.curvature == pytest.approx(plain.curvature + line, abs=1e-12)
+        assert on_road.lateral_position == pytest.approx(plain.lateral_position)
+
+
 @pytest.mark.parametrize("consistent", [True, False])
 def test_an_intention_changes_the_lane_if_the_verdict_is_consistent(
     consistent: bool,

@@ -12,7 +12,9 @@ from numpy.typing import NDArray
 from costeer.base.packing import leaf_names, packed
 from costeer.drivers.driver import DriverParameters
 from costeer.drivers.population import (
+    FASTEST_REACTION,
     POPULATION_VERSION,
+    REACTION_SPREAD,
     PopulationParameters,
     Traits,
     driver_with,
@@ -56,6 +58,8 @@ def test_the_suggested_speed_moves_the_preferred_speed_only() -> None:
     same = slow.longitudinal._replace(preferred_speed=fast.longitudinal.preferred_speed)
     assert fast == slow._replace(longitudinal=same)
 
+
+REACTION = "evasion.reaction_time"
 
 LOG_NORMAL = {
     "tracking.wander_deviation": "wander_deviation_spread",
@@ -129,7 +133,7 @@ def test_noises_of_eye_and_hand_go_together() -> None:
 
 def test_what_is_not_spread_is_everybodys() -> None:
     varied = {name for name in NAMES if np.ptp(drawn(name)) > 0.0}
-    assert varied == {*LOG_NORMAL, *RANGES}
+    assert varied == {*LOG_NORMAL, *RANGES, REACTION}
 
 
 def test_the_driver_without_any_trait_is_the_usual_one() -> None:
@@ -150,7 +154,24 @@ def test_the_population_says_its_version() -> None:
 def test_no_spread_gives_the_median_driver() -> None:
     none = PopulationParameters(*([0.0] * len(PopulationParameters._fields)))
     usual = DriverParameters()
-    assert participant_driver(1, 1, SPEED, none) == usual
+    drawn_one = participant_driver(1, 1, SPEED, none)
+    # Reaction times in an emergency are drawn apart, with a spread of their own.
+    assert drawn_one._replace(evasion=usual.evasion) == usual
+
+
+def test_reaction_times_are_log_normal_and_none_is_below_the_shortest() -> None:
+    times = drawn(REACTION)
+    logs, error = np.log(times), 4.0 * REACTION_SPREAD / math.sqrt(NUM_DRIVERS)
+    assert logs.mean() == pytest.approx(math.log(0.8), abs=error)
+    assert logs.std(ddof=1) == pytest.approx(REACTION_SPREAD, abs=error / 2.0**0.5)
+    assert times.min() >= FASTEST_REACTION == 0.3
+
+
+def test_reaction_times_have_nothing_to_do_with_how_somebody_drives() -> None:
+    others = [drawn(name) for name in (*LOG_NORMAL, *RANGES)]
+    # Four standard errors of a correlation of none.
+    for values in others:
+        assert abs(np.corrcoef(values, drawn(REACTION))[0, 1]) < 4.0 / NUM_DRIVERS**0.5
 
 
 def test_hands_off_holds_the_speed_and_nothing_else() -> None:

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from costeer.base.bezier import path_point
 from costeer.drivers import tracking
 from costeer.drivers.tracking import TrackingParameters
+from costeer.plant.alignment import STRAIGHT, alignment
 from costeer.plant.parameters import RoadParameters
 from tests.drivers.samples import DT, RIGHT, SPEED, driving
 
@@ -64,6 +65,31 @@ def test_own_path_ends_at_the_lane_with_the_drivers_bias() -> None:
 
 def test_aim_adds_the_wander_at_the_near_point_only() -> None:
     state = tracking.initial_state(-3.5)._replace(wander=0.15)
-    wanted = tracking.aim(state, 50.0, 8.0, 7.0)
+    wanted = tracking.aim(state, STRAIGHT, 50.0, 8.0, 7.0)
     assert wanted.near_position == pytest.approx(-3.35)
-    assert wanted.far_slope == 0.0 == wanted.far_curvature
+    assert wanted.far_slope == 0.0 == wanted.far_curvature == wanted.far_turn
+
+
+@pytest.mark.parametrize("radius", [500.0, -500.0])
+def test_on_a_circle_the_aim_is_the_circle_beside_the_roads(radius: float) -> None:
+    circle = alignment((0.0,), (1.0 / radius,))
+    wanted = tracking.aim(tracking.initial_state(-3.5), circle, 50.0, 12.0, 30.0)
+    # A circle leaves its tangent by s² / 2 R, to s^4 / 24 R³.
+    assert wanted.near_position + 3.5 == pytest.approx(12.0**2 / 2.0 / radius, abs=2e-3)
+    assert wanted.far_curvature == pytest.approx(1.0 / (radius + 3.5))
+    assert wanted.far_turn == pytest.approx(30.0 / radius)
+    assert wanted.far_slope == 0.0
+
+
+def test_a_path_from_a_car_that_follows_the_bend_is_straight_along_it() -> None:
+    # The yaw rate of the lane itself, v / (R - y), is no curvature of the path.
+    radius, lateral = 500.0, -3.5
+    bend = 1.0 / (radius - lateral)
+    car = driving(100.0, lateral)._replace(
+        road_curvature=1.0 / radius, yaw_rate=SPEED * bend
+    )
+    path = tracking.path_to(car, lateral, 4.0)
+    for place in (100.0, 130.0, 160.0):
+        point = path_point(path, place)
+        assert point.lateral_position == pytest.approx(lateral, abs=1e-12)
+        assert point.curvature == pytest.approx(0.0, abs=1e-15)

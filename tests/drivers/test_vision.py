@@ -141,8 +141,8 @@ def noise_of(num_steps: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
 
 
 def test_noise_settles_to_its_deviation_and_correlation() -> None:
-    (near_noise, motor_noise), _ = noise_of(120_000)
-    # 2000 s hold about 2000 / (2 · 0.35) independent values: 1.3 % of a deviation.
+    (near_noise, motor_noise), _ = noise_of(60_000)
+    # 1000 s hold about 1000 / (2 · 0.35) independent values: 1.9 % of a deviation.
     assert near_noise.std() == pytest.approx(PARAMETERS.near_noise, rel=0.06)
     assert motor_noise.std() == pytest.approx(PARAMETERS.motor_noise, rel=0.06)
     lag = round(PARAMETERS.noise_time / DT)

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import math
+from functools import cache
 
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 
 from costeer.identification.estimate import CONFIDENCE, half_width, information
 from costeer.identification.likelihood import log_likelihoods, predicted
@@ -29,34 +31,42 @@ def log_likelihood(participant: int, shift: dict[str, float]) -> float:
     return float(log_likelihoods(predicted(driver, evidence)).sum())
 
 
+@cache
+def log_likelihood_of_the_truth(participant: int) -> float:
+    return log_likelihood(participant, {})
+
+
+@cache
+def expected_information(participant: int) -> NDArray[np.float64]:
+    truth = true_driver(participant)
+    return information(truth, STEERING, evidence_of(recorded(participant), truth))
+
+
 @pytest.mark.parametrize("parameter", STEERING, ids=lambda p: p.name)
 @pytest.mark.parametrize("side", [-1.0, 1.0])
 def test_the_truth_is_likelier_than_a_driver_far_from_it(
     parameter: Parameter, side: float
 ) -> None:
-    truth = true_driver(1)
-    expected = information(truth, STEERING, evidence_of(recorded(1), truth))
+    expected = expected_information(1)
     place = STEERING.index(parameter)
     # Eight standard errors away the likelihood has fallen by 32; its maximum is within
     # three of the truth in all but one of 400 recordings, where it is still down by 12.
     far = 8.0 * side / math.sqrt(expected[place, place])
     there = log_likelihood(1, {parameter.name: far})
-    assert there < log_likelihood(1, {})
+    assert there < log_likelihood_of_the_truth(1)
 
 
 def test_the_information_is_that_of_the_scores() -> None:
     # The sum of squared scores estimates the same information; its largest deviation
     # over the diagonal is some sqrt(2/15000) = 1 %, more where single samples weigh.
-    truth = true_driver(2)
-    evidence = evidence_of(recorded(2), truth)
-    expected = np.diag(information(truth, STEERING, evidence))
+    expected = np.diag(expected_information(2))
     for k, parameter in enumerate(STEERING):
         if parameter.name == "arm.inertia":
             continue  # wheel and torque are known together: see the log-Jacobian
         step = 0.05 / math.sqrt(expected[k])
         shifts = ({parameter.name: side * step} for side in (1.0, -1.0))
         up, down = (log_likelihood(2, shift) for shift in shifts)
-        curvature = (2.0 * log_likelihood(2, {}) - up - down) / step**2
+        curvature = (2.0 * log_likelihood_of_the_truth(2) - up - down) / step**2
         assert curvature == pytest.approx(expected[k], rel=0.25)
 
 

@@ -35,7 +35,7 @@ SIZES = (3, 8, 16, 33, 64)
 
 @pytest.mark.parametrize("hidden", SIZES)
 def test_each_verdict_equals_a_fresh_run_over_its_window(hidden: int) -> None:
-    weights, features = lively_weights(hidden), signals(1000)
+    weights, features = lively_weights(hidden), signals(500)
     verdicts = crossing_probabilities(weights, features)
     exact = crossing_probability(weights, windows(features))
     # float32 rounds to 6e-8 and the kernel's tanh errs by up to 4e-7; the errors of 180

@@ -13,11 +13,13 @@ from costeer.loop.events import (
     leader_visible,
     step_events,
 )
+from costeer.plant.fleet import NO_FLEET
 from costeer.plant.parameters import RoadParameters
 from costeer.plant.traffic import TrafficParameters
 from tests.drivers.samples import DT, RIGHT, SPEED, driving, leader
 
 TRAFFIC, ROAD = TrafficParameters(), RoadParameters()
+START = initial_events(NO_FLEET)
 
 
 def after(
@@ -33,8 +35,8 @@ def after(
 
 
 def test_a_leader_appears_ahead_when_the_car_reaches_the_event() -> None:
-    assert not after(initial_events(), 999.9).leader.present
-    appeared = after(initial_events(), 1000.0).leader
+    assert not after(START, 999.9).leader.present
+    appeared = after(START, 1000.0).leader
     assert appeared.present
     assert appeared.longitudinal_position == 1000.0 + TRAFFIC.appearance_distance
     assert appeared.lane == 1.0
@@ -44,22 +46,22 @@ def test_a_leader_appears_ahead_when_the_car_reaches_the_event() -> None:
 def test_a_leader_is_5_to_15_km_h_slower_by_its_draw(
     uniform: float, slower_kmh: float
 ) -> None:
-    appeared = after(initial_events(), 1000.0, uniform=uniform).leader
+    appeared = after(START, 1000.0, uniform=uniform).leader
     difference = SPEED - appeared.longitudinal_velocity
     assert difference == pytest.approx(slower_kmh / 3.6)
 
 
 def test_a_negative_draw_leaves_the_road_empty() -> None:
-    assert not after(initial_events(), 5000.0, uniform=-1.0).leader.present
+    assert not after(START, 5000.0, uniform=-1.0).leader.present
 
 
 def test_a_leader_waits_until_the_car_is_back_in_the_cruising_lane() -> None:
-    assert not after(initial_events(), 1000.0, lane=RIGHT).leader.present
-    assert not after(initial_events(), 1000.0, at_home=False).leader.present
+    assert not after(START, 1000.0, lane=RIGHT).leader.present
+    assert not after(START, 1000.0, at_home=False).leader.present
 
 
 def test_there_are_four_leaders_and_no_fifth() -> None:
-    state, count = initial_events(), 0.0
+    state, count = START, 0.0
     for position in range(0, 20_000, 50):
         state = after(state, float(position))
         count = state.leader.num_appeared
@@ -67,8 +69,8 @@ def test_there_are_four_leaders_and_no_fifth() -> None:
 
 
 def test_the_zone_lasts_from_100_m_behind_until_the_return_is_settled() -> None:
-    ahead = EventState(leader(200.0, 15.0), 0.0)
-    passed = EventState(leader(200.0, 15.0), 1.0)
+    ahead = START._replace(leader=leader(200.0, 15.0))
+    passed = START._replace(leader=leader(200.0, 15.0), event=1.0)
 
     def zone(state: EventState, position: float, at_home: bool) -> float:
         return event_zone(TRAFFIC, state, position, at_home)
@@ -80,7 +82,7 @@ def test_the_zone_lasts_from_100_m_behind_until_the_return_is_settled() -> None:
 
 
 def test_a_leader_drives_on_at_its_speed() -> None:
-    state = after(initial_events(), 1000.0)
+    state = after(START, 1000.0)
     place = state.leader.longitudinal_position
     moved = after(state, 1000.3).leader
     assert moved.longitudinal_position - place == pytest.approx(
@@ -89,11 +91,11 @@ def test_a_leader_drives_on_at_its_speed() -> None:
 
 
 def test_a_leader_far_behind_is_out_of_sight() -> None:
-    state = EventState(leader(1000.0, 15.0), 0.0)
+    state = START._replace(leader=leader(1000.0, 15.0))
     assert leader_visible(state, 1199.0)
     assert not leader_visible(state, 1201.0)
-    assert not leader_visible(initial_events(), 0.0)
+    assert not leader_visible(START, 0.0)
 
 
 def test_nothing_is_undefined_before_the_first_leader() -> None:
-    assert all(math.isfinite(value) for value in initial_events().leader)
+    assert all(math.isfinite(value) for value in START.leader)

@@ -246,8 +246,10 @@ def test_compiled_and_plain_ticks_agree() -> None:
 def test_leader_appears_and_its_zone_ends_when_the_car_has_settled_again() -> None:
     setup = SETUP._replace(events=True, length=8000.0, trigger_times=())
     parameters = loop_parameters(setup)
+    # Nobody steers, and a car without width passes through its leader.
     early = parameters._replace(
-        traffic=parameters.traffic._replace(first_event=50.0, num_events=1.0)
+        traffic=parameters.traffic._replace(first_event=50.0, num_events=1.0),
+        car=parameters.car._replace(width=0.0),
     )
     given = NOTHING_GIVEN._replace(accelerator=0.6, leader_uniform=0.99)
     rows = driven(early, [given] * 1500)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from functools import cache
 from typing import NamedTuple
 
 import numpy as np
@@ -23,6 +24,7 @@ from costeer.sensing.sensors import (
 DT = 1.0 / 60.0
 SENSORS = SensorParameters()
 AHEAD, TURNED = 0.1, 0.7
+NUM_HEADS = 500
 YAWS = st.floats(-1.0, 1.0)
 NORMALS = st.floats(-4.0, 4.0)
 
@@ -34,14 +36,12 @@ class Tracked(NamedTuple):
     valid: NDArray[np.bool_]
 
 
+@cache
 def tracked(
-    head_yaw: float,
-    seconds: float,
-    sensors: SensorParameters = SENSORS,
-    num_heads: int = 500,
+    head_yaw: float, seconds: float, sensors: SensorParameters = SENSORS
 ) -> Tracked:
     """Many heads that are held still."""
-    generator = np.random.default_rng(17)
+    generator, num_heads = np.random.default_rng(17), NUM_HEADS
     state = initial_tracker()
     yaws, flags = [], []
     for _ in range(round(seconds / DT)):
@@ -54,7 +54,7 @@ def tracked(
     return Tracked(np.array(yaws), np.array(flags))
 
 
-@pytest.mark.parametrize("head_yaw", [AHEAD, TURNED, -TURNED])
+@pytest.mark.parametrize("head_yaw", [AHEAD, TURNED])
 def test_a_lost_face_keeps_its_last_angle_and_is_flagged(head_yaw: float) -> None:
     found = tracked(head_yaw, 60.0)
     lost = ~found.valid[1:]
@@ -66,23 +66,19 @@ def test_a_lost_face_keeps_its_last_angle_and_is_flagged(head_yaw: float) -> Non
 
 def shares(head_yaw: float, rate: float) -> tuple[float, float, float]:
     """Share of lost samples, what the rates say of it, and its standard error."""
-    seconds, num_heads = 300.0, 500
-    found = tracked(head_yaw, seconds, num_heads=num_heads)
+    seconds = 300.0
+    found = tracked(head_yaw, seconds)
     lost = ~found.valid[round(5.0 / DT) :]  # settled after many times 0.3 s
     expected = rate * SENSORS.loss_time / (1.0 + rate * SENSORS.loss_time)
     # Losses are rare and independent: their number is about Poisson, each lasts an
     # exponential time, which doubles the variance of their sum.
-    num_losses = rate * (1.0 - expected) * seconds * num_heads
+    num_losses = rate * (1.0 - expected) * seconds * NUM_HEADS
     return float(lost.mean()), expected, expected * math.sqrt(2.0 / num_losses)
 
 
 @pytest.mark.parametrize(
     ("head_yaw", "rate"),
-    [
-        (AHEAD, SENSORS.loss_rate),
-        (TURNED, SENSORS.turned_loss_rate),
-        (-TURNED, SENSORS.turned_loss_rate),
-    ],
+    [(AHEAD, SENSORS.loss_rate), (TURNED, SENSORS.turned_loss_rate)],
 )
 def test_share_of_lost_samples_is_rate_times_time(head_yaw: float, rate: float) -> None:
     share, expected, error = shares(head_yaw, rate)

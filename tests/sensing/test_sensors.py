@@ -10,6 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from costeer.plant import world
+from costeer.plant.alignment import Bend
 from costeer.plant.parameters import DEFAULT_CAR, RoadParameters
 from costeer.plant.steering import ColumnState
 from costeer.plant.vehicle import VehicleState
@@ -123,3 +124,13 @@ def test_a_batch_gives_what_its_members_give() -> None:
         for name in ("lane", "side", "front_slip_angle", "lateral_acceleration"):
             # NumPy's tangent may differ in the last place.
             assert getattr(batch, name)[k] == pytest.approx(getattr(member, name))
+
+
+def test_the_bend_of_the_road_is_measured_where_the_car_is() -> None:
+    state = world.initial_state(DEFAULT_CAR, 0.0, 20.0)
+    head = HeadTracker(0.0, True)
+    bent = measure(DEFAULT_CAR, ROAD, state, 0.0, head, Bend(0.0, -0.002, 1e-5))
+    assert (bent.road_curvature, bent.road_curvature_slope) == (-0.002, 1e-5)
+    straight = measure(DEFAULT_CAR, ROAD, state, 0.0, head)
+    assert (straight.road_curvature, straight.road_curvature_slope) == (0.0, 0.0)
+    assert bent._replace(road_curvature=0.0, road_curvature_slope=0.0) == straight

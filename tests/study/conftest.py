@@ -7,7 +7,10 @@ from pathlib import Path
 import pytest
 
 from costeer.methods.conditions import CONDITION_NAMES
+from costeer.pages.exhibit import Exhibit
+from costeer.pages.style import styled
 from costeer.study.configuration import StudySettings
+from costeer.study.figures.catalogue import draw_figures
 from costeer.study.material import StudyMaterial, read_material
 from costeer.study.run import run_study
 from tests.study.fakes import made_up
@@ -30,3 +33,10 @@ def study_folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def material(study_folder: Path) -> StudyMaterial:
     """What the figures and the report are made from."""
     return read_material(study_folder)
+
+
+@pytest.fixture(scope="session")
+def exhibits(material: StudyMaterial) -> list[Exhibit]:
+    """Every figure of the study; drawing them is most of the work of a report."""
+    with styled():
+        return list(draw_figures(material))

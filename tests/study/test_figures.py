@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 import pytest
@@ -26,18 +26,12 @@ from costeer.pages.style import (
     svg_text,
 )
 from costeer.study.figures import bars, detection, signals, trajectories, workload
-from costeer.study.figures.catalogue import FIGURE_NAMES, draw_figures
+from costeer.study.figures.catalogue import FIGURE_NAMES
 from costeer.study.figures.colours import condition_colour
 from costeer.study.material import StudyMaterial
 from costeer.study.quantities import QUANTITIES, WORKLOAD
 
 UNIT = re.compile(r"\[[^\]]+\]")
-
-
-@pytest.fixture(scope="module")
-def exhibits(material: StudyMaterial) -> Iterator[list[Exhibit]]:
-    with styled():
-        yield list(draw_figures(material))
 
 
 def drawn(exhibits: Sequence[Exhibit]) -> list[Exhibit]:
@@ -59,7 +53,7 @@ def test_everything_the_paper_shows_is_drawn_but_workload(
     exhibits: list[Exhibit],
 ) -> None:
     of_people = {bars.file_name(each) for each in WORKLOAD}
-    of_people |= {"workload-items", "agreement"}
+    of_people |= {"workload-items", "agreement", "traffic"}
     assert {each.name for each in drawn(exhibits)} == set(FIGURE_NAMES) - of_people
 
 
@@ -96,7 +90,7 @@ def test_no_text_leaves_its_figure(exhibits: list[Exhibit]) -> None:
     for exhibit in drawn(exhibits):
         assert exhibit.figure is not None
         canvas = FigureCanvasAgg(exhibit.figure)
-        canvas.draw()
+        exhibit.figure.draw_without_rendering()
         whole = exhibit.figure.bbox
         for text in texts(exhibit):
             box = text.get_window_extent(canvas.get_renderer())

@@ -11,7 +11,9 @@ from pathlib import Path
 
 import pytest
 
+from costeer.pages.exhibit import Exhibit
 from costeer.pages.numerals import number, signed
+from costeer.study import report
 from costeer.study.figures.catalogue import FIGURE_NAMES
 from costeer.study.material import StudyMaterial
 from costeer.study.quantities import BY_STRENGTH, QUANTITIES, WORKLOAD, Quantity
@@ -22,11 +24,17 @@ TABLES = ("tests.csv", "pairs.csv", "summaries.csv", "dropped.csv")
 
 
 @pytest.fixture(scope="module")
-def reported(study_folder: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A copy of the study with its report."""
+def reported(
+    study_folder: Path,
+    exhibits: list[Exhibit],
+    tmp_path_factory: pytest.TempPathFactory,
+) -> Path:
+    """A copy of the study with its report, of figures that are drawn already."""
     folder = tmp_path_factory.mktemp("with-report") / "study"
     shutil.copytree(study_folder, folder)
-    write_report(folder)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(report, "draw_figures", lambda material: exhibits)
+        write_report(folder)
     return folder
 
 
@@ -63,7 +71,7 @@ def summary(page: str) -> dict[str, str]:
 def test_a_report_comes_with_tables_and_figures(reported: Path) -> None:
     names = contents(reported).keys()
     of_people = {each.name.replace("_", "-") for each in WORKLOAD}
-    of_people |= {"workload-items", "agreement"}
+    of_people |= {"workload-items", "agreement", "traffic"}
     figures = {f"figures/{name}.svg" for name in set(FIGURE_NAMES) - of_people}
     assert figures | {*TABLES, "report.html"} <= names
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import errno
+import shutil
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -72,11 +73,23 @@ def rows(file: Path) -> list[dict[str, str]]:
 
 
 @pytest.fixture(scope="module")
-def whole(tmp_path_factory: pytest.TempPathFactory) -> dict[str, bytes]:
-    """What the small study is when nothing disturbs it."""
-    folder = tmp_path_factory.mktemp("whole")
+def undisturbed(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The small study when nothing disturbs it; read only."""
+    folder = tmp_path_factory.mktemp("whole") / "study"
     run_small(folder)
-    return contents(folder)
+    return folder
+
+
+@pytest.fixture(scope="module")
+def whole(undisturbed: Path) -> dict[str, bytes]:
+    """What it holds."""
+    return contents(undisturbed)
+
+
+@pytest.fixture
+def finished(undisturbed: Path, tmp_path: Path) -> Path:
+    """A copy of it."""
+    return shutil.copytree(undisturbed, tmp_path / "study")
 
 
 def test_a_study_leaves_what_the_guide_says(whole: dict[str, bytes]) -> None:
@@ -109,13 +122,12 @@ def test_jobs_do_not_change_a_byte(tmp_path: Path, whole: dict[str, bytes]) -> N
 
 
 def test_a_finished_study_runs_no_trial_again(
-    tmp_path: Path, whole: dict[str, bytes]
+    finished: Path, whole: dict[str, bytes]
 ) -> None:
-    run_small(tmp_path)
     asked, simulate = counted()
-    run_study(tmp_path, SMALL, report=plain_report, simulate=simulate)
+    run_study(finished, SMALL, report=plain_report, simulate=simulate)
     assert asked == []
-    assert contents(tmp_path) == whole
+    assert contents(finished) == whole
 
 
 @pytest.mark.parametrize("jobs", [1, 2])
@@ -171,14 +183,13 @@ def of_another_participant(file: Path) -> None:
     "damage", [cut_short, of_another_study, of_another_participant]
 )
 def test_a_record_that_is_not_the_trial_s_is_not_believed(
-    tmp_path: Path, whole: dict[str, bytes], damage: Callable[[Path], None]
+    finished: Path, whole: dict[str, bytes], damage: Callable[[Path], None]
 ) -> None:
-    run_small(tmp_path)
-    damage(record_path(tmp_path, 1, "strong-rapid"))
+    damage(record_path(finished, 1, "strong-rapid"))
     asked, simulate = counted()
-    run_study(tmp_path, SMALL, report=plain_report, simulate=simulate)
+    run_study(finished, SMALL, report=plain_report, simulate=simulate)
     assert asked == [(1, "strong-rapid")]
-    assert contents(tmp_path) == whole
+    assert contents(finished) == whole
 
 
 def test_a_full_disk_is_told_and_nothing_is_lost(
@@ -238,10 +249,9 @@ def test_a_fault_of_the_progress_display_is_not_a_trial_s(tmp_path: Path) -> Non
         run_study(tmp_path, SMALL, progress=broken, simulate=made_up)
 
 
-def test_a_second_study_in_the_folder_is_refused(tmp_path: Path) -> None:
-    run_small(tmp_path)
+def test_a_second_study_in_the_folder_is_refused(finished: Path) -> None:
     with pytest.raises(ValueError, match="participants is 2 there, 1 here"):
-        run_small(tmp_path, SMALL._replace(participants=1))
+        run_small(finished, SMALL._replace(participants=1))
 
 
 def test_a_folder_in_use_is_refused(tmp_path: Path) -> None:
@@ -257,10 +267,9 @@ def test_a_wrong_number_of_jobs_is_refused(tmp_path: Path, jobs: int) -> None:
 
 
 def test_tables_stand_in_the_order_of_table_4_with_the_order_driven(
-    tmp_path: Path,
+    finished: Path,
 ) -> None:
-    run_small(tmp_path)
-    table = rows(tmp_path / "trials.csv")
+    table = rows(finished / "trials.csv")
     assert [(r["participant"], r["condition"], r["order"]) for r in table] == [
         ("1", "manual", "1"),
         ("1", "strong-rapid", "2"),
@@ -273,28 +282,25 @@ def test_tables_stand_in_the_order_of_table_4_with_the_order_driven(
     assert table[2]["change_duration"] == "8.0"
 
 
-def test_there_is_a_row_per_lane_change(tmp_path: Path) -> None:
-    run_small(tmp_path)
-    counts = [int(r["num_lane_changes"]) for r in rows(tmp_path / "trials.csv")]
+def test_there_is_a_row_per_lane_change(finished: Path) -> None:
+    counts = [int(r["num_lane_changes"]) for r in rows(finished / "trials.csv")]
     assert sum(counts) > 0
-    assert len(rows(tmp_path / "lane_changes.csv")) == sum(counts)
+    assert len(rows(finished / "lane_changes.csv")) == sum(counts)
 
 
 def test_tables_can_be_made_again_from_records(
-    tmp_path: Path, whole: dict[str, bytes]
+    finished: Path, whole: dict[str, bytes]
 ) -> None:
-    run_small(tmp_path)
-    (tmp_path / "trials.csv").unlink()
-    (tmp_path / "lane_changes.csv").write_text("lost")
-    assert remake_tables(tmp_path) == NUM_TRIALS
-    assert contents(tmp_path) == whole
+    (finished / "trials.csv").unlink()
+    (finished / "lane_changes.csv").write_text("lost")
+    assert remake_tables(finished) == NUM_TRIALS
+    assert contents(finished) == whole
 
 
-def test_tables_of_an_unfinished_study_have_fewer_rows(tmp_path: Path) -> None:
-    run_small(tmp_path)
-    cut_short(record_path(tmp_path, 1, "manual"))
-    assert remake_tables(tmp_path, jobs=1) == NUM_TRIALS - 1
-    assert len(rows(tmp_path / "trials.csv")) == NUM_TRIALS - 1
+def test_tables_of_an_unfinished_study_have_fewer_rows(finished: Path) -> None:
+    cut_short(record_path(finished, 1, "manual"))
+    assert remake_tables(finished, jobs=1) == NUM_TRIALS - 1
+    assert len(rows(finished / "trials.csv")) == NUM_TRIALS - 1
 
 
 def test_tables_need_a_record(tmp_path: Path) -> None:

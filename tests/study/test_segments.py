@@ -9,8 +9,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from costeer.study.crossings import LEFT, RIGHT, excursion, in_left_lane
-from costeer.study.definitions import MeasureParameters
+from costeer.study.crossings import LEFT, RIGHT, excursion
+from costeer.study.definitions import DEFAULTS, MeasureParameters
+from costeer.study.lanes import lanes
 from costeer.study.segments import Segments, segment
 from tests.records.mirror import mirrored
 from tests.study.shapes import (
@@ -153,7 +154,7 @@ def test_lane_keeping_is_the_left_lane_away_from_lane_changes() -> None:
 def test_the_right_lane_is_not_lane_keeping() -> None:
     columns = changes([(10.0, 6.0, RIGHT)])
     assert len(keeping_times(columns)) == 1
-    assert not in_left_lane(columns)[-1]
+    assert lanes(columns["lateral_position"], DEFAULTS)[-1] == 0
 
 
 def test_events_are_not_lane_keeping() -> None:

@@ -78,3 +78,14 @@ def test_those_heads_are_the_ones_of_a_study_with_lane_changes() -> None:
     record = synthetic_record(length=2000.0)
     assert tuple(lane_change_rows(record)[0]) == LANE_CHANGE_COLUMNS
     assert tuple(trigger_rows(record)[0]) == TRIGGER_COLUMNS
+
+
+def test_only_another_scenario_than_the_papers_has_a_table_of_its_own(
+    tmp_path: Path,
+) -> None:
+    row = {"measure": "time_gap_mean", "value": math.nan, "unit": "s"}
+    write_trial_tables(tmp_path, [TrialRows({"participant": 1}, [], scenario=[row])])
+    text = (tmp_path / "scenario_measures.csv").read_text()
+    assert text == "measure,value,unit\ntime_gap_mean,,s\n"
+    write_trial_tables(tmp_path, [TrialRows({"participant": 1}, [])])
+    assert not (tmp_path / "scenario_measures.csv").exists()

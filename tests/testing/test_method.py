@@ -69,7 +69,9 @@ def test_a_method_that_is_not_compiled_is_refused_by_numba() -> None:
         check_method(rival(rivals.damping), jax=False)
 
 
-@pytest.mark.parametrize("name", ["ibhs", "manual"])
+@pytest.mark.parametrize(
+    "name", ["ibhs", pytest.param("manual", marks=pytest.mark.slow)]
+)
 def test_the_methods_of_costeer_pass_in_python(name: str) -> None:
     report = check_method(name, engines=("python",), jax=False)
     assert "a sample of NaN gives a finite torque" in str(report)

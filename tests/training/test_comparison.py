@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from functools import cache
 
 import numpy as np
 import pytest
@@ -77,11 +78,14 @@ def compared(*predictors: Predictor, reference: str) -> Comparison:
     return compare([*predictors], RECORDINGS, reference, PARAMETERS)
 
 
-BOTH = compared(PERFECT, COIN, NEAR, reference="coin")
+@cache
+def both() -> Comparison:
+    """All three, beside the coin."""
+    return compared(PERFECT, COIN, NEAR, reference="coin")
 
 
 def test_a_perfect_predictor_has_area_1_and_beats_a_coin() -> None:
-    perfect = BOTH.judged[0]
+    perfect = both().judged[0]
     assert perfect.judgement.facts["samples"]["pr_auc"] == 1.0
     assert perfect.judgement.facts["at_false_rate"]["lead_time_median"] > 2.9
     for score in ("pr_auc", AT_RATE):
@@ -91,7 +95,7 @@ def test_a_perfect_predictor_has_area_1_and_beats_a_coin() -> None:
 
 def test_the_other_way_round_a_coin_is_worse() -> None:
     turned = compared(PERFECT, COIN, reference="perfect").judged[1]
-    straight = BOTH.judged[0].differences["pr_auc"]
+    straight = both().judged[0].differences["pr_auc"]
     assert turned.differences["pr_auc"].verdict == "worse"
     assert turned.differences["pr_auc"].value == pytest.approx(-straight.value)
 
@@ -164,10 +168,10 @@ def test_one_driver_gives_no_verdict() -> None:
 
 def test_the_same_seed_gives_the_same_table_as_json_without_nan() -> None:
     again = compared(PERFECT, COIN, NEAR, reference="coin")
-    text = json.dumps(comparison_facts(BOTH), allow_nan=False)
+    text = json.dumps(comparison_facts(both()), allow_nan=False)
     assert text == json.dumps(comparison_facts(again), allow_nan=False)
     other = compare([PERFECT, COIN], RECORDINGS, "coin", PARAMETERS._replace(seed=2))
-    first = BOTH.judged[1].judgement.facts["interval_95"]
+    first = both().judged[1].judgement.facts["interval_95"]
     assert other.judged[1].judgement.facts["interval_95"] != first
 
 

@@ -170,3 +170,17 @@ def test_degrees_are_noticed() -> None:
     (told,) = recording("a", "a", changed(yaw_angle=degrees)).notes
     assert told.startswith("a: yaw_angle looks like degrees, expected rad; if so, mul")
     assert recording("a", "a", columns(1)).notes == ()
+
+
+def test_a_record_of_three_lanes_says_to_which_side_it_was_measured() -> None:
+    road = {"num_lanes": 3.0, "overtaking_side": -1.0}
+    about = {"seed": 1, "participant": 1, "configuration": {"road": road}}
+    drive_on_three = columns(1)
+    rows = np.arange(len(drive_on_three["time"])) * 3 // len(drive_on_three["time"])
+    drive_on_three["lane"] = (2 - rows).astype(np.int8)  # left, middle, right
+    (made,) = recordings_of(TrialRecord(about, drive_on_three), "a")
+    # The middle lane's neighbour is that for overtaking; the last has only the other.
+    assert [int(made.side[rows == third][0]) for third in (0, 1, 2)] == [-1, -1, 1]
+    about["configuration"] = {"road": road | {"overtaking_side": 1.0}}
+    (turned,) = recordings_of(TrialRecord(about, drive_on_three), "a")
+    assert [int(turned.side[rows == third][0]) for third in (0, 1, 2)] == [-1, 1, 1]

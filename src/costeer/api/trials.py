@@ -25,6 +25,8 @@ from costeer.methods.conditions import CONDITION_NAMES, parse_conditions
 from costeer.methods.registry import AnyMethod
 from costeer.plant.parameters import CarParameters
 from costeer.records.columns import TrialRecord
+from costeer.scenarios.definition import Scenario
+from costeer.scenarios.reading import chosen
 from costeer.study.configuration import StudySettings
 from costeer.study.run import StudyOutcome, full_report, run_study
 
@@ -40,7 +42,8 @@ SUGGESTED_SPEED = 70.0 / 3.6
 def simulate(
     condition: str = "strong-normal",
     *,
-    length: float = 8000.0,
+    scenario: File | Scenario = "expressway",
+    length: float | None = None,
     seed: int = 1,
     participant: int = 1,
     intention: str = "network",
@@ -50,7 +53,7 @@ def simulate(
     predictor: File | Predictor | Judge = OURS,
     weights: File | None = None,
     car: File | CarParameters = "default",
-    speed: float = SUGGESTED_SPEED,
+    speed: float | None = None,
     strength_factor: float = math.nan,
     change_duration: float = math.nan,
     trigger_times: Iterable[float] = (),
@@ -68,7 +71,9 @@ def simulate(
     Args:
         condition: Of Table IV, as "weak-gentle" or "manual"; another name needs a
             `strength_factor`.
-        length: Of the course [m].
+        scenario: Road, other cars and events: a name of `costeer scenario list`, a
+            file "NAME.yaml", or a `costeer.Scenario`.
+        length: Of the course; that of the scenario's road if None [m].
         seed: Of the population and of all noise.
         participant: Number of the driver in the population.
         intention: "network", "scripted" (the driver's own plan) or "off".
@@ -81,7 +86,8 @@ def simulate(
             the last window, shape `(180, 6)`, to a probability.
         weights: File of the predictor's numbers, .npz or .onnx.
         car: "default", "compact", "large", parameters, or the file of one.
-        speed: That the trial starts with and the driver prefers [m/s].
+        speed: That the trial starts with and the driver prefers; the scenario's if
+            None [m/s].
         strength_factor: On K_h of a condition of your own [-].
         change_duration: Of the system's lane changes in such a condition [s].
         trigger_times: When the system starts a lane change by itself [s].
@@ -109,7 +115,11 @@ def simulate(
         True
     """
     given = locals()
+    course = chosen(by_name(scenario), length, speed)
     given |= {
+        "scenario": course.scenario,
+        "length": course.length,
+        "speed": course.speed,
         "driver": driver_of(by_name(driver)),
         "car": _car(car),
         "method": by_name(method),
@@ -136,8 +146,9 @@ def study(
     seed: int = 1,
     method: File | AnyMethod = "ibhs",
     intention: str = "network",
-    length: float = 8000.0,
-    speed: float = SUGGESTED_SPEED,
+    scenario: File | Scenario = "expressway",
+    length: float | None = None,
+    speed: float | None = None,
     car: File | CarParameters = "default",
     predictor: File | Predictor | Judge = OURS,
     weights: File | None = None,
@@ -156,8 +167,10 @@ def study(
         seed: Of drivers, leaders and noise.
         method: Guidance of the assisted trials: a method, its name or place.
         intention: "network", or "scripted": the driver's decision is known.
-        length: Of the course [m].
-        speed: Suggested to the drivers [m/s].
+        scenario: Road, other cars and events: a name of `costeer scenario list`, a
+            file "NAME.yaml", or a `costeer.Scenario`.
+        length: Of the course; that of the scenario's road if None [m].
+        speed: Suggested to the drivers; the scenario's if None [m/s].
         car: "default", "compact", "large", parameters, or the file of one.
         predictor: What reads the intention: its name or place, a `Predictor`, or a
             function as for `simulate`; it is called in several threads.
@@ -188,7 +201,11 @@ def study(
         2
     """
     given = locals()
+    course = chosen(by_name(scenario), length, speed)
     given |= {
+        "scenario": by_name(scenario),
+        "length": course.length,
+        "speed": course.speed,
         "conditions": _conditions(conditions),
         "method": by_name(method),
         "car": by_name(car),

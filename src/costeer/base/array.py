@@ -173,6 +173,22 @@ def select(condition: Flag, if_true: Value, if_false: Value) -> Value:
     return cast("Value", _numpy_like(condition).where(condition, if_true, if_false))
 
 
+def when(
+    condition: Flag,
+    function: Callable[..., Value],
+    arguments: tuple[Any, ...],
+    otherwise: Value,
+) -> Value:
+    """`function(*arguments)` by a flag, or else a value of the same kind.
+
+    Where the flag is false compiled code does not call the function; JAX does, and
+    takes the other value.
+    """
+    if isinstance(condition, (bool, np.bool_)):
+        return function(*arguments) if condition else otherwise
+    return select(condition, function(*arguments), otherwise)
+
+
 def repeat(
     function: Callable[[State, Arguments], State],
     times: int,
@@ -267,6 +283,16 @@ def _logical_not(flag: Any) -> Any:
 @overload(select, strict=False)
 def _select(condition: Any, if_true: Any, if_false: Any) -> Any:
     return lambda condition, if_true, if_false: if_true if condition else if_false
+
+
+@overload(when, strict=False)
+def _when(condition: Any, function: Any, arguments: Any, otherwise: Any) -> Any:
+    def implementation(
+        condition: Any, function: Any, arguments: Any, otherwise: Any
+    ) -> Any:
+        return function(*arguments) if condition else otherwise
+
+    return implementation
 
 
 @overload(repeat, strict=False)

@@ -37,11 +37,14 @@ class CommandGroup(LazyGroup):
         "parameters": "List every parameter that --set can change: value, unit, range, "
         "source.",
         "train": "Fit the intention network on records.",
+        "emergencies": "Let obstacles appear, with and without guidance.",
         "evaluate": "Judge the intention network on records or a table.",
         "analyse": "Compute driving measures from records or a table.",
         "report": "Write tables, tests, figures and report.html of a study again.",
         "drive": "Drive by yourself: wheel, gamepad or keyboard; Ctrl-C ends it.",
         "session": "Run a study with people: plan, questionnaires, drives, data.",
+        "scenario": "List, show, draw, make and export scenarios: roads, other cars, "
+        "events.",
         "replay": "Show a recorded trial in the browser; Ctrl-C ends it.",
         "wheel": "List, calibrate and test steering wheels.",
         "head": "Calibrate the tracker of a participant's head, or show what it sees.",

@@ -115,12 +115,22 @@ def show_tables(analyses: list[Analysis]) -> None:
         rows = [_row(name, measure) for name, measure in measured.items()]
         typer.echo(_title(each))
         print_table(["measure", "value", "unit"], rows)
+        _show_zones(each)
         _show_lane_changes(each)
         for line in _not_computed(each):
             typer.echo(line)
         for line in each.notes:
             note(f"note on {_name(each)}: {line}")
         typer.echo()
+
+
+def _show_zones(each: Analysis) -> None:
+    from costeer.cli.console import print_table
+
+    for zone, found in each.zones.items():
+        rows = [_row(name, one) for name, one in found.items() if not one.reason]
+        if rows:
+            print_table(["measure", "value", "unit"], rows, title=f"Zone {zone}")
 
 
 def _title(each: Analysis) -> str:
@@ -147,12 +157,25 @@ _HEADINGS = {
 }
 
 
+_GAPS = {
+    "index": "no.",
+    "from_lane": "from lane",
+    "to_lane": "to lane",
+    "lead_gap": "lead m",
+    "lead_time_gap": "lead s",
+    "lag_gap": "lag m",
+    "lag_time_gap": "lag s",
+}
+
+
 def _show_lane_changes(each: Analysis) -> None:
     from costeer.cli.console import print_table
 
-    rows = [[_cell(name, row[name]) for name in _HEADINGS] for row in each.lane_changes]
-    if rows:
-        print_table(list(_HEADINGS.values()), rows, title="Lane changes")
+    for title, headings in (("Lane changes", _HEADINGS), ("Gaps accepted", _GAPS)):
+        known = [row for row in each.lane_changes if headings.keys() <= row.keys()]
+        rows = [[_cell(name, row[name]) for name in headings] for row in known]
+        if rows:
+            print_table(list(headings.values()), rows, title=title)
 
 
 def _row(name: str, measure: Measure) -> list[str]:

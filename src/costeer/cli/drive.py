@@ -11,7 +11,6 @@ import typer
 
 from costeer.cli import plug_ins
 from costeer.cli.console import note
-from costeer.cli.units import parse_speed
 
 if TYPE_CHECKING:
     from starlette.types import ASGIApp
@@ -52,16 +51,9 @@ def drive(
         str, typer.Option(help="Pseudonym; picks the calibration of the head.")
     ] = "1",
     seed: Annotated[int, typer.Option(help="Of the leaders.")] = 1,
-    length: Annotated[float, typer.Option(help="Of the course [m].")] = 8000.0,
-    speed: Annotated[
-        float,
-        typer.Option(
-            parser=parse_speed,
-            show_default="70km/h",
-            metavar="SPEED",
-            help="At the start [m/s], or with its unit: 70km/h.",
-        ),
-    ] = 70 / 3.6,
+    scenario: plug_ins.Scenario = "expressway",
+    length: plug_ins.Length = None,
+    speed: plug_ins.Speed = None,
     car: plug_ins.Car = "default",
     predictor: plug_ins.PredictorName = "gru",
     weights: plug_ins.Weights = None,
@@ -96,6 +88,7 @@ def drive(
     Example:
         costeer drive
         costeer drive --condition weak-gentle --record out/me.parquet
+        costeer drive --scenario expressway-curves
     """
     from costeer.cli.devices import chosen_head, chosen_wheel, pseudonym_number
     from costeer.loop.inputs import car_of
@@ -108,13 +101,15 @@ def drive(
 
     if record is not None:
         check_free(record)
+    course = plug_ins.chosen_scenario(scenario, length, speed)
     trial = TrialSetup(
         condition=condition,
         method=method,
         participant=pseudonym_number(participant),
         seed=seed,
-        length=length,
-        speed=speed,
+        length=course.length,
+        speed=course.speed,
+        scenario=course.scenario,
         car=car_of(car),
         events=events,
         predictor=predictor,

@@ -1,11 +1,17 @@
-"""Options by which a user replaces parts of the loop; three commands share them."""
+"""Options by which a user replaces parts of the loop; several commands share them."""
 
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
+
+from costeer.cli.console import note
+from costeer.cli.units import parse_speed
+
+if TYPE_CHECKING:
+    from costeer.scenarios.reading import Chosen
 
 Method = Annotated[
     str,
@@ -22,6 +28,26 @@ _DRIVER = (
     "driver model (module:object or FILE.py), or a record whose hands are replayed "
     "(FILE.parquet)"
 )
+Scenario = Annotated[
+    str,
+    typer.Option(
+        help="Road, other cars and events: a name of `costeer scenario list`, or a "
+        "FILE.yaml."
+    ),
+]
+Length = Annotated[
+    float | None,
+    typer.Option(show_default="of the scenario", help="Of the course [m]."),
+]
+Speed = Annotated[
+    float | None,
+    typer.Option(
+        parser=parse_speed,
+        show_default="of the scenario",
+        metavar="SPEED",
+        help="Suggested, and at the start [m/s], or with its unit: 70km/h.",
+    ),
+]
 Driver = Annotated[str, typer.Option("--driver", "--driver-file", help=f"{_DRIVER}.")]
 Drivers = Annotated[
     list[str] | None,
@@ -58,6 +84,21 @@ ParameterFile = Annotated[
 ]
 
 Values = tuple[tuple[str, float], ...]
+
+
+def chosen_scenario(given: str, length: float | None, speed: float | None) -> Chosen:
+    """A scenario with the length and speed that are driven; notes are told.
+
+    Raises:
+        ValueError: If there is none, or a curve is too tight for the speed.
+        OSError: If its file cannot be read.
+    """
+    from costeer.scenarios.reading import chosen
+
+    found = chosen(given, length, speed)
+    for each in found.notes:
+        note(f"costeer: {each}")
+    return found
 
 
 def chosen_values(file: Path | None, words: list[str] | None) -> Values:

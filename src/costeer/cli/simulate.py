@@ -11,7 +11,6 @@ import typer
 from costeer.cli import plug_ins
 from costeer.cli.console import note
 from costeer.cli.trial_summary import print_summary
-from costeer.cli.units import parse_speed
 
 if TYPE_CHECKING:
     from costeer.loop.scenario import TrialSetup
@@ -26,16 +25,9 @@ def simulate(
     participant: Annotated[
         int, typer.Option(help="Number of the driver in the population.")
     ] = 1,
-    length: Annotated[float, typer.Option(help="Of the course [m].")] = 8000.0,
-    speed: Annotated[
-        float,
-        typer.Option(
-            parser=parse_speed,
-            show_default="70km/h",
-            metavar="SPEED",
-            help="Suggested [m/s], or with its unit: 70km/h.",
-        ),
-    ] = 70 / 3.6,
+    scenario: plug_ins.Scenario = "expressway",
+    length: plug_ins.Length = None,
+    speed: plug_ins.Speed = None,
     car: plug_ins.Car = "default",
     driver: plug_ins.Driver = "virtual",
     intention: Annotated[
@@ -69,18 +61,21 @@ def simulate(
         costeer simulate --out out/trial.parquet --condition weak-gentle
         costeer simulate --out out/a.parquet --driver hands-off --trigger-at 20
         costeer simulate --out out/b.parquet --method my_method.py
+        costeer simulate --out out/c.parquet --scenario expressway-curves
     """
     from costeer.loop.inputs import car_of, driver_of
     from costeer.loop.scenario import TrialSetup
     from costeer.methods.conditions import condition as condition_named
 
+    course = plug_ins.chosen_scenario(scenario, length, speed)
     setup = TrialSetup(
         participant=participant,
         seed=seed,
         condition=condition_named(condition).name,
         method=method,
-        length=length,
-        speed=speed,
+        length=course.length,
+        speed=course.speed,
+        scenario=course.scenario,
         car=car_of(car),
         driver=driver_of(driver),
         intention=intention,

@@ -12,7 +12,6 @@ import typer
 from costeer.cli import plug_ins
 from costeer.cli.console import note
 from costeer.cli.trial_progress import study_progress
-from costeer.cli.units import parse_speed
 
 if TYPE_CHECKING:
     from costeer.study.configuration import StudySettings
@@ -38,16 +37,9 @@ def study(
         str,
         typer.Option(help="network, or scripted: the driver's decision is known."),
     ] = "network",
-    length: Annotated[float, typer.Option(help="Of the course [m].")] = 8000.0,
-    speed: Annotated[
-        float,
-        typer.Option(
-            parser=parse_speed,
-            show_default="70km/h",
-            metavar="SPEED",
-            help="Suggested [m/s], or with its unit: 70km/h.",
-        ),
-    ] = 70 / 3.6,
+    scenario: plug_ins.Scenario = "expressway",
+    length: plug_ins.Length = None,
+    speed: plug_ins.Speed = None,
     car: plug_ins.Car = "default",
     driver: plug_ins.Drivers = None,
     predictor: plug_ins.PredictorName = "gru",
@@ -68,10 +60,12 @@ def study(
         costeer study --out out/study
         costeer study --out out/quick --participants 2 --length 2000 --no-report
         costeer study --out out/firm --set guidance.lateral_error_gain=3
+        costeer study --out out/curves --scenario expressway-curves
     """
     from costeer.methods.conditions import parse_conditions
     from costeer.study.configuration import StudySettings, check_settings
 
+    course = plug_ins.chosen_scenario(scenario, length, speed)
     settings = check_settings(
         StudySettings(
             participants=participants,
@@ -79,8 +73,9 @@ def study(
             seed=seed,
             method=method,
             intention=intention,
-            length=length,
-            speed=speed,
+            length=course.length,
+            speed=course.speed,
+            scenario=scenario,
             car=car,
             predictor=predictor,
             weights=plug_ins.weights_path(weights) or "",

@@ -128,12 +128,14 @@ def choose_mode(
     started = keeping & wanted & xp.logical_not(to_keeping)
     kept_lane = xp.select(to_keeping, measurement.lane, state.lane)
     lane = xp.select(started, measurement.lane + intention.side, kept_lane)
-    new_path = plan_path(parameters, road, measurement, lane)
+    path = xp.when(
+        started, plan_path, (parameters, road, measurement, lane), state.path
+    )
     mode = xp.select(keeping, LANE_KEEPING, LANE_CHANGING)
     return TrajectoryState(
         mode=xp.select(started, LANE_CHANGING, mode),
         lane=lane,
-        path=xp.select(started, new_path, state.path),
+        path=path,
         path_ended=ended & xp.logical_not(replan),
     )
 

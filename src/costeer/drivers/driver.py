@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from costeer.base import array as xp
-from costeer.base.array import Real, compiled
+from costeer.base.array import Flag, Real, compiled
 from costeer.drivers import (
     decision,
     evasion,
@@ -16,12 +16,7 @@ from costeer.drivers import (
     vision,
 )
 from costeer.drivers.arm import ArmCommand, ArmParameters, wanted_torque
-from costeer.drivers.decision import (
-    DecisionParameters,
-    DecisionState,
-    Draws,
-    Surroundings,
-)
+from costeer.drivers.decision import DecisionState, Draws
 from costeer.drivers.evasion import Evasion, EvasionParameters, EvasionState
 from costeer.drivers.gaze import GazeDraws, GazeParameters, GazeState
 from costeer.drivers.interface import (
@@ -33,6 +28,7 @@ from costeer.drivers.interface import (
     as_leader,
 )
 from costeer.drivers.longitudinal import LongitudinalParameters, LongitudinalState
+from costeer.drivers.overtaking import DecisionParameters, Surroundings
 from costeer.drivers.reliance import RelianceParameters, RelianceState
 from costeer.drivers.tracking import TrackingParameters, TrackingState
 from costeer.drivers.vision import VisionNoise, VisionParameters, VisionState
@@ -166,14 +162,10 @@ def aim(
     road = knowledge.road
     out = (decided.phase == decision.CHANGING) | (decided.phase == decision.PASSING)
     away = xp.select(out, road.overtaking_side, 0.0)
-    path = tracking.planned(
-        parameters.tracking,
-        road,
-        measurement,
-        cruising_lane(road) + away,
-        decided.change_duration,
-    )
-    return wandered._replace(path=xp.select(decided.started, path, wandered.path))
+    lane = cruising_lane(road) + away
+    given = parameters.tracking, road, measurement, lane, decided.change_duration
+    path = xp.when(decided.started, tracking.planned, given, wandered.path)
+    return wandered._replace(path=path)
 
 
 @compiled
@@ -185,16 +177,12 @@ def swerve(
     evading: Evasion,
 ) -> TrackingState:
     """The aim in an emergency: beside the obstacle, and back into a lane after it."""
-    away = tracking.path_to(measurement, evading.target, parameters.evasion.duration)
-    back = tracking.planned(
-        parameters.tracking,
-        knowledge.road,
-        measurement,
-        measurement.lane,
-        parameters.decision.change_duration,
-    )
-    planned = xp.select(evading.ends, back, aimed.path)
-    return aimed._replace(path=xp.select(evading.steers, away, planned))
+    duration = parameters.decision.change_duration
+    home = parameters.tracking, knowledge.road, measurement, measurement.lane, duration
+    path = xp.when(evading.ends, tracking.planned, home, aimed.path)
+    away = measurement, evading.target, parameters.evasion.duration
+    path = xp.when(evading.steers, tracking.path_to, away, path)
+    return aimed._replace(path=path)
 
 
 @compiled
@@ -247,6 +235,12 @@ def leader_in(perception: Perception, direction: Real) -> LeaderState:
 
 
 @compiled
+def unless(unseen: Flag, leader: LeaderState) -> LeaderState:
+    """The leader, if the driver has had the time to see it."""
+    return leader._replace(present=leader.present & xp.logical_not(unseen))
+
+
+@compiled
 def feel(
     parameters: DriverParameters,
     state: DriverState,
@@ -283,6 +277,73 @@ def feel(
 
 
 @compiled
+def resolve(
+    parameters: DriverParameters,
+    state: DriverState,
+    knowledge: Knowledge,
+    perception: Perception,
+    noise: DriverNoise,
+    dt: Real,
+) -> tuple[EvasionState, Evasion, DecisionState]:
+    """See a danger, or else decide; who has met a danger begins to plan anew."""
+    out = knowledge.road.overtaking_side
+    intended = decision.direction(state.decision, out)
+    steered = decision.steered_to(state.decision, intended)
+    evaded, evading = evasion.step(
+        parameters.evasion, state.evasion, perception, knowledge, steered, dt
+    )
+    decided = decide(parameters, state, knowledge, perception, noise, dt)
+    is_home = perception.measurement.lane == cruising_lane(knowledge.road)
+    calm = decision.resumed(state.decision, is_home)
+    return evaded, evading, xp.select(evading.active | evading.ends, calm, decided)
+
+
+@compiled
+def brake(
+    parameters: DriverParameters,
+    state: DriverState,
+    foot: LongitudinalState,
+    evading: Evasion,
+    measurement: Measurement,
+    dt: Real,
+) -> LongitudinalState:
+    """The foot, on the brake in an emergency."""
+    return longitudinal.braking_hard(
+        parameters.longitudinal,
+        foot,
+        state.longitudinal.wanted_acceleration,
+        xp.select(evading.brakes, parameters.evasion.braking, 0.0),
+        measurement.longitudinal_velocity,
+        dt,
+    )
+
+
+@compiled
+def acted(
+    parameters: DriverParameters,
+    state: DriverState,
+    knowledge: Knowledge,
+    measurement: Measurement,
+    command: ArmCommand,
+) -> Action:
+    """What the driver does until the next step, from the state after this one."""
+    decided, wanted = state.decision, state.longitudinal.wanted_acceleration
+    return Action(
+        arm=command,
+        pedals=longitudinal.pedals(
+            knowledge.car, wanted, measurement.longitudinal_velocity
+        ),
+        head_yaw=gaze.head_yaw(parameters.gaze, state.gaze),
+        intention=decision.direction(decided, knowledge.road.overtaking_side),
+        at_home=decided.phase == decision.CRUISING,
+        plan=Plan(
+            change_duration=decided.change_duration,
+            time_to_crossing=decision.time_to_crossing(decided),
+        ),
+    )
+
+
+@compiled
 def act(
     parameters: DriverParameters,
     state: DriverState,
@@ -302,19 +363,9 @@ def act(
         dt: Control step [s].
     """
     measurement = perception.measurement
-    evaded, evading = evasion.step(
-        parameters.evasion,
-        state.evasion,
-        perception.around,
-        measurement,
-        knowledge.car,
-        knowledge.road.num_lanes,
-        dt,
+    evaded, evading, decided = resolve(
+        parameters, state, knowledge, perception, noise, dt
     )
-    decided = decide(parameters, state, knowledge, perception, noise, dt)
-    is_home = measurement.lane == cruising_lane(knowledge.road)
-    calm = decision.resumed(state.decision, is_home)
-    decided = xp.select(evading.active | evading.ends, calm, decided)
     direction = decision.direction(decided, knowledge.road.overtaking_side)
     head = look(parameters, state, decided, direction, noise, dt)
     aimed = aim(parameters, state, knowledge, measurement, decided, noise, dt)
@@ -322,23 +373,20 @@ def act(
     eyes, intended = see(parameters, state, knowledge, measurement, aimed, noise, dt)
     hands, command = feel(parameters, state, knowledge, perception, intended, dt)
     steered = decision.steered_to(decided, direction)
+    leaders = (
+        unless(evading.unseen, perception.leader),
+        unless(evading.unseen, leader_in(perception, steered)),
+    )
     foot = longitudinal.step(
         parameters.longitudinal,
         state.longitudinal,
         measurement,
-        (perception.leader, leader_in(perception, steered)),
+        leaders,
         decided,
         noise.speed,
         dt,
     )
-    foot = longitudinal.braking_hard(
-        parameters.longitudinal,
-        foot,
-        state.longitudinal.wanted_acceleration,
-        xp.select(evading.brakes, parameters.evasion.braking, 0.0),
-        measurement.longitudinal_velocity,
-        dt,
-    )
+    foot = brake(parameters, state, foot, evading, measurement, dt)
     new_state = DriverState(
         vision=eyes,
         reliance=hands,
@@ -348,16 +396,4 @@ def act(
         longitudinal=foot,
         evasion=evaded,
     )
-    return new_state, Action(
-        arm=command,
-        pedals=longitudinal.pedals(
-            knowledge.car, foot.wanted_acceleration, measurement.longitudinal_velocity
-        ),
-        head_yaw=gaze.head_yaw(parameters.gaze, head),
-        intention=direction,
-        at_home=decided.phase == decision.CRUISING,
-        plan=Plan(
-            change_duration=decided.change_duration,
-            time_to_crossing=decision.time_to_crossing(decided),
-        ),
-    )
+    return new_state, acted(parameters, new_state, knowledge, measurement, command)

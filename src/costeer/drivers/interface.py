@@ -16,8 +16,9 @@ from costeer.base.sources import source_hash
 from costeer.drivers.arm import ArmCommand
 from costeer.drivers.longitudinal import Pedals
 from costeer.plant.alignment import STRAIGHT, Alignment
-from costeer.plant.fleet import CarKind, Neighbours
+from costeer.plant.fleet import CarKind
 from costeer.plant.following import LONGEST_GAP, Ahead
+from costeer.plant.outlook import Neighbours
 from costeer.plant.parameters import CarParameters, ColumnParameters, RoadParameters
 from costeer.plant.traffic import LeaderState, no_leader
 from costeer.sensing.measurement import Measurement

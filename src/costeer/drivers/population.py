@@ -15,12 +15,12 @@ from numpy.typing import NDArray
 
 from costeer.base.array import Real
 from costeer.drivers.arm import ArmParameters
-from costeer.drivers.decision import DecisionParameters
 from costeer.drivers.driver import DriverParameters, act, initial_state
 from costeer.drivers.evasion import EvasionParameters
 from costeer.drivers.gaze import GazeParameters
 from costeer.drivers.interface import Draw, DriverModel
 from costeer.drivers.longitudinal import LongitudinalParameters
+from costeer.drivers.overtaking import DecisionParameters
 from costeer.drivers.reliance import RelianceParameters
 from costeer.drivers.tracking import TrackingParameters
 from costeer.drivers.vision import VisionParameters

@@ -12,11 +12,10 @@ from costeer.plant.fleet import (
     Car,
     Fleet,
     FleetParameters,
-    Spot,
     initial_fleet,
-    outlook,
     with_ego,
 )
+from costeer.plant.outlook import Spot, has_cars, outlook
 from costeer.plant.parameters import CarParameters, RoadParameters
 from costeer.plant.place import (
     BARRIER,
@@ -198,7 +197,9 @@ def contact_of(
         position=measurement.longitudinal_position,
         lateral=measurement.lateral_position,
     )
-    hit = hits_car(fleet, state, car, ego) | hits_leader(road, state.leader, car, ego)
+    given = fleet, state, car, ego
+    hit = xp.when(has_cars(fleet), hits_car, given, False)
+    hit = hit | hits_leader(road, state.leader, car, ego)
     now = xp.select(hit, CAR, ground)
     return xp.select(state.contact >= BARRIER, state.contact, now)
 

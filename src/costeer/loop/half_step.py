@@ -10,7 +10,7 @@ from __future__ import annotations
 from typing import Any, Generic, NamedTuple, TypeVar
 
 from costeer.base import array as xp
-from costeer.base.array import Real, inlined
+from costeer.base.array import Real, compiled, inlined
 from costeer.controller.signals import Assistance, Request
 from costeer.drivers.interface import Action
 from costeer.loop.events import (
@@ -131,6 +131,28 @@ def contained(torque: Real, limit: Real) -> Real:
     return xp.select(xp.isfinite(torque), xp.clip(torque, -limit, limit), 0.0)
 
 
+@compiled
+def moved_events(
+    parameters: LoopParameters[Any],
+    state: EventState,
+    measurement: Measurement,
+    seat: Seat,
+    time: Real,
+) -> EventState:
+    """Leader, event zone and other cars one control step later."""
+    events = step_events(
+        parameters.traffic,
+        parameters.road,
+        state,
+        measurement,
+        seat.action.at_home,
+        xp.select(parameters.start.events > 0.5, seat.leader_uniform, -1.0),
+        DT,
+    )
+    around = World(road=parameters.road, law=parameters.following, time=time, dt=DT)
+    return events._replace(fleet=moved(parameters.fleet, events.fleet, around))
+
+
 @inlined
 def half_step(
     rule: Rule[Any, S],
@@ -177,22 +199,9 @@ def half_step(
         events=now,
         lead=lead_of(now, measurement.longitudinal_position),
     )
-    events = step_events(
-        parameters.traffic,
-        parameters.road,
-        now,
-        measurement,
-        seat.action.at_home,
-        xp.select(parameters.start.events > 0.5, seat.leader_uniform, -1.0),
-        DT,
-    )
-    around = World(
-        road=parameters.road, law=parameters.following, time=state.time, dt=DT
-    )
-    events = events._replace(fleet=moved(parameters.fleet, events.fleet, around))
     return ControlState(
         method=method_state,
-        events=events,
+        events=moved_events(parameters, now, measurement, seat, state.time),
         torque_command=contained(signals.applied_torque, limit),
         time=state.time + DT,
     ), sample

@@ -36,7 +36,7 @@ from costeer.loop.parameters import DT, LoopParameters
 from costeer.methods.interface import Rule
 from costeer.plant import world
 from costeer.plant.alignment import bend_at
-from costeer.plant.fleet import neighbours
+from costeer.plant.outlook import NOBODY, has_cars, neighbours
 from costeer.plant.parameters import CarParameters, ColumnParameters
 from costeer.plant.place import NOWHERE, Place
 from costeer.plant.road import cruising_lane, lane_centre
@@ -243,13 +243,9 @@ def drive(
     )
     events = state.control.events
     stretch, lasts = stretch_at(parameters.stretches, measurement.longitudinal_position)
-    around = neighbours(
-        parameters.fleet,
-        events.fleet,
-        parameters.road,
-        measurement.lane,
-        xp.select(lasts, stretch.wanted_side, 0.0),
-    )
+    given = parameters.fleet, events.fleet, parameters.road, measurement.lane
+    around = xp.when(has_cars(parameters.fleet), neighbours, given, NOBODY)
+    around = around._replace(wanted_side=xp.select(lasts, stretch.wanted_side, 0.0))
     ahead = as_leader(around.own.ahead, measurement)
     perception = Perception(
         measurement=measurement,

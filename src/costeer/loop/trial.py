@@ -45,7 +45,8 @@ from costeer.loop.tick import Network, Script
 from costeer.methods.interface import Method, method_sources
 from costeer.plant.fleet import num_cars
 from costeer.records import metadata as kinds
-from costeer.records.columns import TrialRecord, car_columns, with_method_columns
+from costeer.records.cars import car_columns
+from costeer.records.columns import TrialRecord, with_method_columns
 from costeer.records.row import ROW_COLUMNS, record_columns
 from costeer.scenarios.reading import scenario_named
 

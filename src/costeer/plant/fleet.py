@@ -1,4 +1,4 @@
-"""The other cars: what they are, where they are, and what one meets in a lane.
+"""The other cars: what they are and where they are.
 
 Place 0 is the car that is driven; the others follow. Their speeds are along the road's
 reference line, whatever the lane.
@@ -17,15 +17,8 @@ from numpy.typing import NDArray
 
 from costeer.base import array as xp
 from costeer.base.array import Real, compiled
-from costeer.base.lookup import element, rows_of
+from costeer.base.lookup import rows_of
 from costeer.base.packing import packed
-from costeer.plant.following import (
-    LONGEST_GAP,
-    Ahead,
-    LaneOutlook,
-)
-from costeer.plant.parameters import RoadParameters
-from costeer.plant.road import lane_centre
 
 MOST_CARS = 40
 """Other cars that a scenario may have."""
@@ -155,7 +148,7 @@ class FleetParameters(NamedTuple):
         num_places: Places in use, the driven car's with them [-]. Source: the scenario.
         range: Cars of a stream that are so far away come in again at the other end
             [m]. Source: the scenario.
-        kinds: A `CarKind` in each row, flat.
+        kinds: A `CarKind` in each row, flat [SI units]. Source: the scenario.
     """
 
     num_places: Real
@@ -173,6 +166,9 @@ class Fleet(NamedTuple):
     cars: Numbers
 
 
+_UNUSED = packed(CarKind())
+
+
 def fleet_parameters(
     kinds: Sequence[CarKind], reach: float = 400.0, own: CarKind = OWN
 ) -> FleetParameters:
@@ -188,13 +184,18 @@ def fleet_parameters(
     """
     if len(kinds) > MOST_CARS:
         raise ValueError(f"there are {len(kinds)} other cars; give at most {MOST_CARS}")
-    unused = [CarKind()] * (MOST_CARS - len(kinds))
-    table = np.concatenate([packed(each) for each in (own, *kinds, *unused)])
+    table = np.tile(_UNUSED, SLOTS)
+    for place, kind in enumerate((own, *kinds)):
+        table[place * KINDS.width : (place + 1) * KINDS.width] = packed(kind)
     return FleetParameters(float(len(kinds) + 1), reach, table)
 
 
 NO_FLEET = fleet_parameters(())
 """An empty road."""
+
+
+_PLAIN = len(CarKind._fields) - 3
+"""Fields of a `CarKind` before its orders."""
 
 
 def _initial_car(kind: CarKind) -> Car:
@@ -210,132 +211,13 @@ def _initial_car(kind: CarKind) -> Car:
 
 def initial_fleet(parameters: FleetParameters) -> Fleet:
     """The cars before the first step; none has appeared."""
-    cars = [_initial_car(_read_kind(parameters.kinds, k)) for k in range(SLOTS)]
-    if isinstance(parameters.kinds, np.ndarray):
-        return Fleet(np.array(cars).ravel())
-    numpy: Any = sys.modules["jax.numpy"]
-    rows = numpy.asarray([numpy.stack([1.0 * each for each in car]) for car in cars])
-    return Fleet(rows.ravel())
-
-
-class Spot(NamedTuple):
-    """A place from which one looks along a lane.
-
-    Attributes:
-        place: Of the car that looks; it does not see itself [-].
-        position: Of its middle [m].
-        lateral: Of the line along which it looks [m].
-        half_width: Cars that reach into a band so wide beside it are in the way [m].
-        lane: Cars on their way to it are in the way too; NaN: none [-].
-    """
-
-    place: int
-    position: Real
-    lateral: Real
-    half_width: Real
-    lane: Real = math.nan
-
-
-def outlook(parameters: FleetParameters, fleet: Fleet, spot: Spot) -> LaneOutlook:
-    """The next cars ahead and behind along a line.
-
-    Args:
-        parameters: Sizes of the cars.
-        fleet: Where they are.
-        spot: From where.
-    """
-    if isinstance(parameters.num_places, float) and parameters.num_places <= 1.0:
-        return LaneOutlook()
-    jax = sys.modules.get("jax.numpy")
-    traced = jax is not None and not isinstance(spot.position, float)
-    numpy: Any = jax if traced else np
-    kinds = _columns(numpy, CarKind, parameters.kinds, KINDS.width)
-    cars = _columns(numpy, Car, fleet.cars, CARS.width)
-    beside = numpy.abs(cars["lateral"] - spot.lateral)
-    others = numpy.arange(SLOTS) != spot.place
-    near = beside < spot.half_width + kinds["width"] / 2.0
-    near = near | (cars["lane"] == spot.lane)
-    seen = (cars["present"] > 0.5) & near & others
-    distance = cars["position"] - spot.position
-    half = (kinds["length"] + kinds["length"][spot.place]) / 2.0
-    ahead = numpy.where(seen & (distance >= 0.0), distance - half, LONGEST_GAP)
-    behind = numpy.where(seen & (distance < 0.0), -distance - half, LONGEST_GAP)
-    sized = cars | {"width": kinds["width"]}
-    return LaneOutlook(_nearest(sized, ahead), _nearest(sized, behind))
-
-
-# Any, in these two: NumPy or JAX, and arrays of theirs.
-def _columns(numpy: Any, kind: Any, flat: Any, width: int) -> dict[str, Any]:
-    """The numbers of all rows by name; nested records come last and are left out."""
-    table = numpy.asarray(flat).reshape(-1, width).T
-    return dict(zip(kind._fields, table, strict=False))
-
-
-def _nearest(cars: dict[str, Any], gaps: Any) -> Ahead:
-    index = gaps.argmin()
-    gap = element(gaps, index)
-    seen = Ahead(
-        gap=gap,
-        velocity=element(cars["velocity"], index),
-        desired=element(cars["desired"], index),
-        lateral=element(cars["lateral"], index),
-        width=element(cars["width"], index),
-    )
-    return xp.select(gap < LONGEST_GAP, seen, Ahead())
-
-
-@overload(outlook, strict=False)
-def _outlook(parameters: Any, fleet: Any, spot: Any) -> Any:
-    def implementation(parameters: Any, fleet: Any, spot: Any) -> Any:
-        ahead, behind = Ahead(), Ahead()
-        own = _read_kind(parameters.kinds, spot.place).length
-        for other in range(int(parameters.num_places)):
-            car = _read_car(fleet.cars, other)
-            kind = _read_kind(parameters.kinds, other)
-            if other == spot.place or car.present < 0.5:
-                continue
-            reach = spot.half_width + kind.width / 2.0
-            if abs(car.lateral - spot.lateral) >= reach and car.lane != spot.lane:
-                continue
-            distance = car.position - spot.position
-            gap = abs(distance) - (kind.length + own) / 2.0
-            seen = Ahead(gap, car.velocity, car.desired, car.lateral, kind.width)
-            if distance >= 0.0:
-                ahead = seen if seen.gap < ahead.gap else ahead
-            else:
-                behind = seen if seen.gap < behind.gap else behind
-        return LaneOutlook(ahead, behind)
-
-    return implementation
-
-
-@compiled
-def lane_outlook(
-    parameters: FleetParameters,
-    fleet: Fleet,
-    road: RoadParameters,
-    index: int,
-    lane: Real,
-) -> LaneOutlook:
-    """What a car would meet in a lane.
-
-    Args:
-        parameters: Sizes of the cars.
-        fleet: Where they are.
-        road: Its lanes.
-        index: Of the car [-].
-        lane: That it is in, or might change to [-].
-    """
-    kind: CarKind = _read_kind(parameters.kinds, index)
-    car: Car = _read_car(fleet.cars, index)
-    spot = Spot(
-        place=index,
-        position=car.position,
-        lateral=lane_centre(road, lane),
-        half_width=kind.width / 2.0 + MARGIN,
-        lane=lane,
-    )
-    return outlook(parameters, fleet, spot)
+    known = isinstance(parameters.kinds, np.ndarray)
+    numpy: Any = np if known else sys.modules["jax.numpy"]
+    kinds = numpy.asarray(parameters.kinds).reshape(SLOTS, KINDS.width)
+    read = {name: kinds[:, k] for k, name in enumerate(CarKind._fields[:_PLAIN])}
+    said = _initial_car(CarKind(**read))  # of all cars at once
+    columns = [numpy.broadcast_to(each, SLOTS) for each in said]
+    return Fleet(numpy.stack(columns, axis=1).ravel())
 
 
 def with_ego(fleet: Fleet, ego: Car) -> Fleet:
@@ -390,48 +272,3 @@ def car_numbers(fleet: Fleet, num_cars: int) -> list[Any]:
 def num_cars(parameters: FleetParameters) -> int:
     """Other cars in use [-]."""
     return int(parameters.num_places) - 1
-
-
-class Neighbours(NamedTuple):
-    """The cars about the driven one.
-
-    Attributes:
-        own: In its way and behind it.
-        left: In the lane to the left.
-        right: In the lane to the right.
-        wanted_side: Of a lane change that the scenario asks for, -1 right, +1 left, 0
-            none [-].
-    """
-
-    own: LaneOutlook = LaneOutlook()
-    left: LaneOutlook = LaneOutlook()
-    right: LaneOutlook = LaneOutlook()
-    wanted_side: Real = 0.0
-
-
-@compiled
-def neighbours(
-    parameters: FleetParameters,
-    fleet: Fleet,
-    road: RoadParameters,
-    lane: Real,
-    wanted_side: Real,
-) -> Neighbours:
-    """The cars about the driven one.
-
-    Args:
-        parameters: Sizes of the cars.
-        fleet: Where they are, the driven one too.
-        road: Its lanes.
-        lane: That the driven car is in [-].
-        wanted_side: Of a lane change that the scenario asks for [-].
-    """
-    ego: Car = _read_car(fleet.cars, 0)
-    width = _read_kind(parameters.kinds, 0).width
-    path = Spot(0, ego.position, ego.lateral, width / 2.0)
-    return Neighbours(
-        own=outlook(parameters, fleet, path),
-        left=lane_outlook(parameters, fleet, road, 0, lane + 1.0),
-        right=lane_outlook(parameters, fleet, road, 0, lane - 1.0),
-        wanted_side=wanted_side,
-    )

@@ -26,9 +26,6 @@ from costeer.plant.fleet import (
     Fleet,
     FleetParameters,
     Order,
-    Spot,
-    lane_outlook,
-    outlook,
 )
 from costeer.plant.following import (
     LONGEST_GAP,
@@ -36,6 +33,7 @@ from costeer.plant.following import (
     advantage,
     following_acceleration,
 )
+from costeer.plant.outlook import Spot, lane_outlook, outlook
 from costeer.plant.parameters import RoadParameters
 from costeer.plant.road import cruising_lane, lane_centre
 

@@ -69,7 +69,12 @@ def front_slip_tangent(
     """Tangent of the front slip angle [-]: of a difference of two directions."""
     speed = xp.maximum(longitudinal_velocity, _SLOWEST)
     direction = (lateral_velocity + car.front_distance * yaw_rate) / speed
-    wheel = xp.tan(road_wheel_angle)
+    return _tangent_of_difference(direction, xp.tan(road_wheel_angle))
+
+
+@compiled
+def _tangent_of_difference(direction: Real, wheel: Real) -> Real:
+    """Tangent of the difference of two angles from their tangents [-]."""
     return (direction - wheel) / (1.0 + direction * wheel)
 
 
@@ -101,17 +106,42 @@ def rear_slip_tangent(
     return (lateral_velocity - car.rear_distance * yaw_rate) / speed
 
 
+class Wheels(NamedTuple):
+    """Where the front wheels point: functions of one angle, computed once a step.
+
+    Attributes:
+        tangent: Of the road-wheel angle [-].
+        sine: [-].
+        cosine: [-].
+    """
+
+    tangent: Real
+    sine: Real
+    cosine: Real
+
+
+@compiled
+def pointing(road_wheel_angle: Real) -> Wheels:
+    """The front wheels at an angle [rad]."""
+    return Wheels(
+        tangent=xp.tan(road_wheel_angle),
+        sine=xp.sin(road_wheel_angle),
+        cosine=xp.cos(road_wheel_angle),
+    )
+
+
 @compiled
 def front_lateral_force(state: VehicleState, motion: VehicleInput) -> Real:
     """Lateral force of the front axle [N]."""
-    car = motion.car
-    slip = front_slip_tangent(
-        car,
-        state.longitudinal_velocity,
-        state.lateral_velocity,
-        state.yaw_rate,
-        motion.road_wheel_angle,
-    )
+    return _front_force(state, motion.car, xp.tan(motion.road_wheel_angle))
+
+
+@compiled
+def _front_force(state: VehicleState, car: CarParameters, wheel_tangent: Real) -> Real:
+    """Lateral force of the front axle, by the tangent of the wheel angle [N]."""
+    speed = xp.maximum(state.longitudinal_velocity, _SLOWEST)
+    direction = (state.lateral_velocity + car.front_distance * state.yaw_rate) / speed
+    slip = _tangent_of_difference(direction, wheel_tangent)
     load = car.mass * GRAVITY * car.rear_distance / wheelbase(car)
     return lateral_force(slip, car.front_cornering_stiffness, car.friction * load)
 
@@ -152,38 +182,63 @@ def accelerations(
         front: Lateral force of the front axle [N].
         rear: Lateral force of the rear axle [N].
     """
-    angle, mass = motion.road_wheel_angle, motion.car.mass
-    losses = resistance(motion.car, state.longitudinal_velocity)
-    forward = state.drive - losses - front * xp.sin(angle) / mass
-    return forward, (front * xp.cos(angle) + rear) / mass
+    wheels = pointing(motion.road_wheel_angle)
+    return _accelerations(state, motion.car, wheels, front, rear)
+
+
+@compiled
+def _accelerations(
+    state: VehicleState, car: CarParameters, wheels: Wheels, front: Real, rear: Real
+) -> tuple[Real, Real]:
+    """`accelerations` by where the wheels point."""
+    losses = resistance(car, state.longitudinal_velocity)
+    forward = state.drive - losses - front * wheels.sine / car.mass
+    return forward, (front * wheels.cosine + rear) / car.mass
+
+
+class Held(NamedTuple):
+    """What is held over a plant step.
+
+    Attributes:
+        motion: What moves the car.
+        wheels: Where its front wheels point.
+    """
+
+    motion: VehicleInput
+    wheels: Wheels
 
 
 @compiled
 def vehicle_rate(state: VehicleState, motion: VehicleInput) -> VehicleState:
     """Time derivative of the car's state: planar motion of one rigid body."""
-    car = motion.car
-    front = front_lateral_force(state, motion)
+    return _rate(state, Held(motion, pointing(motion.road_wheel_angle)))
+
+
+@compiled
+def _rate(state: VehicleState, held: Held) -> VehicleState:
+    """`vehicle_rate` with what is held over the step."""
+    motion, wheels = held.motion, held.wheels
+    car, place = motion.car, motion.place
+    front = _front_force(state, car, wheels.tangent)
     rear = rear_lateral_force(state, motion)
-    push, pull = accelerations(state, motion, front, rear)
-    across = front * xp.cos(motion.road_wheel_angle)
+    push, pull = _accelerations(state, car, wheels, front, rear)
+    across = front * wheels.cosine
     moment = car.front_distance * across - car.rear_distance * rear
     cosine, sine = xp.cos(state.yaw_angle), xp.sin(state.yaw_angle)
     forward, left = state.longitudinal_velocity, state.lateral_velocity
     along = push + state.yaw_rate * left
-    bend = motion.place.bend
-    moved = state.longitudinal_position - bend.station
-    curvature = bend.curvature + bend.slope * moved
+    moved = state.longitudinal_position - place.bend.station
+    curvature = place.bend.curvature + place.bend.slope * moved
     progress = (forward * cosine - left * sine) / (
         1.0 - curvature * state.lateral_position
     )
+    pushed = pull + place.side_force / car.mass
     return VehicleState(
         longitudinal_position=progress,
         lateral_position=forward * sine + left * cosine,
         yaw_angle=state.yaw_rate - curvature * progress,
         longitudinal_velocity=xp.select((forward > 0.0) | (along > 0.0), along, 0.0),
-        lateral_velocity=pull
-        + motion.place.side_force / car.mass
-        - state.yaw_rate * forward,
+        lateral_velocity=pushed - state.yaw_rate * forward,
         yaw_rate=moment / car.yaw_inertia,
         drive=(motion.drive_command - state.drive) / car.powertrain_lag,
     )
@@ -195,5 +250,6 @@ def driven(state: VehicleState, motion: VehicleInput, dt: Real) -> VehicleState:
     standing = state._replace(
         longitudinal_velocity=0.0, lateral_velocity=0.0, yaw_rate=0.0, drive=0.0
     )
-    moved = rk4(vehicle_rate, state, motion, dt)
+    held = Held(motion, pointing(motion.road_wheel_angle))
+    moved = rk4(_rate, state, held, dt)
     return xp.select(motion.place.stopped, standing, moved)

@@ -34,12 +34,7 @@ METHOD_PREFIX = "method_"
 """How the names of columns begin that a method adds to those of every record."""
 
 CAR_PREFIX = "car_"
-"""How the names of columns begin that say where another car is."""
-
 ADDED_PREFIXES = (METHOD_PREFIX, CAR_PREFIX)
-
-CAR_SIGNALS = ("position", "lateral", "velocity")
-"""What a record says of each other car, in this order."""
 
 
 class Column(NamedTuple):
@@ -353,20 +348,14 @@ COLUMNS: tuple[Column, ...] = (
         stepped=True,
         before=0.0,
     ),
-    Column(
-        "road_curvature",
-        "1/m",
-        "float64",
-        "of the left lane's centre at the car, left positive",
-        "measurement.road_curvature",
-        mirrored="flipped",
-        before=0.0,
-    ),
+    _measured(
+        "road_curvature", "1/m", "of the left lane's centre at the car", "flipped"
+    )._replace(before=0.0),
     Column(
         "contact",
         "-",
         "int8",
-        "what the car touches: 0 nothing, 1 rumble strip, 2 barrier, 3 another car",
+        "0, or what the car touches: 1 rumble strip, 2 barrier, 3 another car",
         "events.contact",
         stepped=True,
         before=0.0,
@@ -377,32 +366,11 @@ COLUMN_NAMES: tuple[str, ...] = tuple(column.name for column in COLUMNS)
 COLUMNS_BY_NAME: dict[str, Column] = {column.name: column for column in COLUMNS}
 
 
-def car_columns(num_cars: int) -> tuple[Column, ...]:
-    """Where each of the other cars is; NaN while it is not on the road."""
-    said = (
-        ("m", "middle of car {} along the road", "same"),
-        ("m", "of car {} from the left lane's centre, left positive", "reflected"),
-        ("m/s", "velocity of car {} along the road", "same"),
-    )
-    return tuple(
-        Column(
-            f"{CAR_PREFIX}{car:02d}_{name}",
-            unit,
-            "float64",
-            text.format(car),
-            mirrored=mirrored,  # type: ignore[arg-type]  # one of the words above
-        )
-        for car in range(1, num_cars + 1)
-        for name, (unit, text, mirrored) in zip(CAR_SIGNALS, said, strict=True)
-    )
-
-
 def with_method_columns(added: Sequence[Column]) -> tuple[Column, ...]:
     """The columns of every record and those that a method or a scenario adds.
 
     Args:
-        added: Columns of the method, names with the prefix `method_`, and of other
-            cars, with the prefix `car_`.
+        added: Their names begin with `method_` or `car_`.
 
     Raises:
         ValueError: If a column cannot be one of a method, saying which and why.

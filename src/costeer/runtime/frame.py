@@ -9,7 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from costeer.plant.fleet import MOST_CARS
-from costeer.records.columns import CAR_PREFIX, CAR_SIGNALS, COLUMNS, Column
+from costeer.records.cars import CAR_SIGNALS
+from costeer.records.columns import CAR_PREFIX, COLUMNS, Column
 
 
 def _told(name: str, unit: str, description: str, stepped: bool = False) -> Column:

@@ -21,7 +21,8 @@ from costeer.methods.ibhs import IBHS
 from costeer.methods.manual import MANUAL
 from costeer.methods.registry import AnyMethod, method_named
 from costeer.plant.fleet import num_cars
-from costeer.records.columns import Column, car_columns
+from costeer.records.cars import car_columns
+from costeer.records.columns import Column
 from costeer.runtime.frame import MOST_METHOD_COLUMNS
 from costeer.scenarios.reading import scenario_named
 

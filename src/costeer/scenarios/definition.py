@@ -9,6 +9,7 @@ left is positive.
 from __future__ import annotations
 
 import math
+import re
 from typing import NamedTuple
 
 KINDS = {"car": (4.5, 1.8), "truck": (12.0, 2.5), "obstacle": (1.0, 1.75)}
@@ -30,11 +31,11 @@ class Bent(NamedTuple):
 
     Attributes:
         at: Along the road [m].
-        radius: Of the left lane's centre, to the left positive; infinite: straight [m].
+        radius: Of the left lane's centre, to the left positive; missing: straight [m].
     """
 
     at: float
-    radius: float = math.inf
+    radius: float = math.nan
 
 
 class Road(NamedTuple):
@@ -212,6 +213,15 @@ class Scenario(NamedTuple):
         zones: Stretches for measures.
         after_collision: What a trial does after a collision: "end", or "restart" where
             a person drives.
+
+    Example:
+        >>> import costeer
+        >>> from costeer.scenarios.definition import Bent, Road
+        >>> bend = Road(length=600, stations=(Bent(100), Bent(200, radius=500)))
+        >>> mine = costeer.Scenario("bend", speed="80 km/h", road=bend)
+        >>> record = costeer.simulate("manual", scenario=mine, intention="off")
+        >>> record.metadata["scenario"]["name"]
+        'bend'
     """
 
     name: str
@@ -224,3 +234,42 @@ class Scenario(NamedTuple):
     events: tuple[Event, ...] = ()
     zones: tuple[Zone, ...] = ()
     after_collision: str = "end"
+
+
+def speed_of(text: str) -> float:
+    """A speed [m/s] from "80 km/h", "50 mph" or "22 m/s"; a bare number is in m/s.
+
+    Raises:
+        ValueError: If it is none.
+    """
+    found = re.fullmatch(r"\s*([-+0-9.eE]+)\s*(km/h|m/s|mph|)\s*", text)
+    try:
+        value = float(found[1]) if found else math.nan
+    except ValueError:
+        value = math.nan
+    if not found or not math.isfinite(value):
+        raise ValueError(f"{text!r} is no speed; give one as 80 km/h or 22 m/s")
+    # 3.6 km/h are 1 m/s exactly; its inverse is no exact number.
+    return value / 3.6 if found[2] == "km/h" else value * _UNITS[found[2]]
+
+
+_UNITS = {"m/s": 1.0, "": 1.0, "mph": 0.44704}
+
+
+def curvature_of(station: Bent) -> float:
+    """Curvature at a station, left positive; 0 where the road is straight [1/m]."""
+    return 0.0 if math.isnan(station.radius) else 1.0 / station.radius
+
+
+def size_of(actor: Actor) -> tuple[float, float]:
+    """Length and width of an actor [m]."""
+    length, width = KINDS[actor.kind]
+    return (
+        length if math.isnan(actor.length) else actor.length,
+        width if math.isnan(actor.width) else actor.width,
+    )
+
+
+def home_lane(road: Road) -> int:
+    """The lane that one drives in when nobody is overtaken."""
+    return road.lanes - 1 if road.traffic == "left" else 0

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from costeer.plant.alignment import Alignment, alignment
 from costeer.plant.fleet import (
@@ -28,13 +30,16 @@ from costeer.scenarios.definition import (
     KINDS,
     SIDES,
     Actor,
+    Bent,
     Order,
     Overtaking,
     Road,
     Scenario,
     When,
+    curvature_of,
+    size_of,
+    speed_of,
 )
-from costeer.scenarios.reading import size_of, speed_of
 
 _STREAM = 7
 """Of the random numbers of the other cars, apart from those of the driver."""
@@ -99,7 +104,7 @@ def world_of(scenario: Scenario, draw: Draw) -> World:
     """
     road = road_of(scenario.road, draw.length)
     own = CarKind(length=draw.car.length, width=draw.car.width)
-    others = [*_actors(scenario, road), *_stream(scenario, road, draw)]
+    others = others_of(scenario, draw)
     return World(
         road=road,
         alignment=alignment_of(scenario.road),
@@ -107,6 +112,12 @@ def world_of(scenario: Scenario, draw: Draw) -> World:
         fleet=fleet_parameters(others, scenario.stream.reach, own),
         stretches=_stretches(scenario),
     )
+
+
+def others_of(scenario: Scenario, draw: Draw) -> list[CarKind]:
+    """All other cars but those to overtake: the actors first, then the stream."""
+    road = road_of(scenario.road, draw.length)
+    return [*_actors(scenario, road), *_stream(scenario, road, draw)]
 
 
 def road_of(road: Road, length: float) -> RoadParameters:
@@ -124,10 +135,25 @@ def road_of(road: Road, length: float) -> RoadParameters:
 def alignment_of(road: Road) -> Alignment:
     """How a road runs; it begins with the curvature of its first station."""
     places = [station.at for station in road.stations]
-    bends = [1.0 / station.radius for station in road.stations]
+    bends = [curvature_of(station) for station in road.stations]
     if places and places[0] > 0.0:
         places, bends = [0.0, *places], [bends[0], *bends]
     return alignment(places, bends)
+
+
+def curvatures(
+    stations: Sequence[Bent], places: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Curvature of the left lane's centre at places along the road [1/m].
+
+    Args:
+        stations: Of the road; none: it is straight.
+        places: [m].
+    """
+    if not stations:
+        return np.zeros_like(places)
+    bends = [curvature_of(each) for each in stations]
+    return np.interp(places, [each.at for each in stations], bends)
 
 
 def _traffic(overtaking: Overtaking) -> TrafficParameters:

@@ -1,8 +1,9 @@
 """Measures of a file: a trial record, or any table with some of its columns."""
 
 import os
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from math import isnan
+from types import MappingProxyType
 from typing import NamedTuple
 
 import numpy as np
@@ -19,7 +20,14 @@ from costeer.study.measures import Row, lane_change_rows, parameters_of, prepare
 from costeer.study.recordings import Stretch, stretches
 from costeer.study.rounding import rounding
 from costeer.study.sampling import EVEN_ENOUGH, Sampling, evened, sampling
-from costeer.study.trial_measures import trial_measures
+from costeer.study.scenario import Surroundings, surroundings
+from costeer.study.scenario_measures import (
+    change_surroundings,
+    has_surroundings,
+    surrounding_measures,
+    zone_measures,
+)
+from costeer.study.trial_measures import Trial, trial_measures
 
 _TOO_SLOW = 6.0  # [Hz]: ten samples per period of the reversal rate's low-pass
 
@@ -32,10 +40,13 @@ class Analysis(NamedTuple):
         sequence: Name of the stretch; empty if the file is one.
         num_rows: Samples.
         sampling: Rate and regularity.
-        measures: By name as in `trials.csv`; those without a value say why.
-        lane_changes: Rows as in `lane_changes.csv`.
+        measures: By name as in `trials.csv`, and of other cars, curves and contacts
+            where the recording tells of any; those without a value say why.
+        lane_changes: Rows as in `lane_changes.csv`, with lanes and accepted gaps where
+            there are other cars or curves.
         notes: What the reader should know before trusting the numbers.
         doubts: Those of the notes that name what looks wrong in the file.
+        zones: Measures of each zone of the scenario, by its name.
     """
 
     source: str
@@ -46,6 +57,7 @@ class Analysis(NamedTuple):
     lane_changes: list[Row]
     notes: tuple[str, ...]
     doubts: tuple[str, ...] = ()
+    zones: Mapping[str, dict[str, Measure]] = MappingProxyType({})
 
 
 def analyse_file(
@@ -89,17 +101,22 @@ def analyse(
 def _analysed(
     recording: TrialRecord, part: Stretch, parameters: MeasureParameters, source: str
 ) -> Analysis:
-    part, doubts, notes = _mended(part)
+    part, doubts, notes = _mended(part, parameters)
     found = _sampling(part)
     even = recording._replace(columns=dict(evened(part.columns, found)))
-    measures = trial_measures(prepared(even, parameters))
+    trial, around = prepared(even, parameters), surroundings(recording)
+    measures = trial_measures(trial)
+    changes = lane_change_rows(even, parameters)
+    if has_surroundings(even.columns):
+        measures |= surrounding_measures(trial, around)
+        changes = _with_gaps(trial, around, changes)
     return Analysis(
         source=source,
         sequence=part.name,
         num_rows=int(part.columns["time"].size),
         sampling=found,
         measures=measures,
-        lane_changes=lane_change_rows(even, parameters),
+        lane_changes=changes,
         notes=(
             *part.notes,
             *doubts,
@@ -107,10 +124,26 @@ def _analysed(
             *_notes(even.columns, found, measures, part.ignored),
         ),
         doubts=tuple(doubts),
+        zones={zone.name: zone_measures(trial, around, zone) for zone in around.zones},
     )
 
 
-def _mended(part: Stretch) -> tuple[Stretch, list[str], list[str]]:
+def _with_gaps(trial: Trial, around: Surroundings, changes: list[Row]) -> list[Row]:
+    """Rows of lane changes with their lanes and the gaps that were accepted."""
+    if isinstance(trial.segments, str):
+        return changes
+    more = [
+        change_surroundings(trial, around, change) for change in trial.segments.changes
+    ]
+    return [
+        row | {name: each.value for name, each in found.items()}
+        for row, found in zip(changes, more, strict=True)
+    ]
+
+
+def _mended(
+    part: Stretch, parameters: MeasureParameters
+) -> tuple[Stretch, list[str], list[str]]:
     """A stretch whose yaw is unwrapped and whose short gaps are bridged.
 
     Returns:
@@ -118,9 +151,21 @@ def _mended(part: Stretch) -> tuple[Stretch, list[str], list[str]]:
     """
     _sampling(part)
     columns, told = unwrapped(part.columns)
-    doubts = [*told, *contradictions(columns), *unit_doubts(columns)]
+    doubts = [*told, *contradictions(_on_two_lanes(columns, parameters))]
+    doubts += unit_doubts(columns)
     columns, gaps = bridged(columns)
     return part._replace(columns=columns), doubts, gaps
+
+
+def _on_two_lanes(columns: Columns, parameters: MeasureParameters) -> Columns:
+    """The columns without lanes that are not those of the paper's two-lane road.
+
+    Only on that road is it known which lane belongs to which position.
+    """
+    road = (parameters.num_lanes, parameters.lane_width)
+    if road == (DEFAULTS.num_lanes, DEFAULTS.lane_width):
+        return columns
+    return {name: values for name, values in columns.items() if name != "lane"}
 
 
 def _sampling(part: Stretch) -> Sampling:
@@ -172,6 +217,10 @@ def as_json(analyses: Iterable[Analysis]) -> list[dict[str, object]]:
             "num_rows": each.num_rows,
             "sampling": each.sampling._asdict(),
             "measures": {k: _measure(v) for k, v in each.measures.items()},
+            "zones": {
+                name: {k: _measure(v) for k, v in found.items()}
+                for name, found in each.zones.items()
+            },
             "lane_changes": [_plain_row(row) for row in each.lane_changes],
             "notes": list(each.notes),
         }

@@ -24,6 +24,8 @@ _OPTIONS = {
     "drivers",
     "driver_parameters",
     "parameters",
+    "scenario",
+    "scenario_content",
 }
 """What a user chooses, and what the files hold that a user names."""
 
@@ -34,6 +36,9 @@ _CODE = {
 }
 """What a user may have edited, and what comes with costeer as well."""
 
+PUBLISHED_SCENARIO = "expressway"
+"""The scenario of a study that names none."""
+
 _VERSION = {"costeer_version", "simulation_source"}
 
 _FOLLOWS = {
@@ -43,6 +48,7 @@ _FOLLOWS = {
     "intention_model_hash": ("predictor", "weights", "intention"),
     "car_parameters": ("car",),
     "driver_parameters": ("drivers",),
+    "scenario_content": ("scenario",),
 }
 """What need not be told where one of these settings is."""
 
@@ -90,6 +96,11 @@ def _told(key: str, there: Any, here: Any) -> list[str]:
     """One setting in words; of several values in it those that differ."""
     if key in _CODE:
         return [_CODE[key]]
+    if key == "scenario":
+        there, here = there or PUBLISHED_SCENARIO, here or PUBLISHED_SCENARIO
+    if key == "scenario_content":
+        edited = ", ".join(sorted(_changed(there or {}, here or {})))
+        return [f"the scenario was edited ({edited})"]
     if key == "driver_parameters":
         pairs = enumerate(zip(there or (), here or (), strict=False), 1)
         return [w for n, pair in pairs for w in _values(f"driver {n}: ", *pair)]

@@ -37,6 +37,10 @@ from costeer.methods.conditions import (
 from costeer.methods.interface import method_sources
 from costeer.methods.registry import AnyMethod, method_named
 from costeer.plant.parameters import CarParameters
+from costeer.scenarios.definition import Scenario
+from costeer.scenarios.reading import checked, scenario_named, scenario_of, shipped
+from costeer.scenarios.writing import plain
+from costeer.study.changes import PUBLISHED_SCENARIO
 from costeer.study.design import Trial, plan_trials
 from costeer.study.plain import (
     plain_count,
@@ -66,6 +70,7 @@ class StudySettings(NamedTuple):
         weights: File of its numbers; empty for those that ship.
         drivers: Drivers or their files, who take turns; none: the population.
         parameters: Dotted names of parameters and the values they are given.
+        scenario: Road, other cars and events: a name, a YAML file, or itself.
     """
 
     participants: int = 12
@@ -80,6 +85,7 @@ class StudySettings(NamedTuple):
     weights: str = ""
     drivers: tuple[str | Driver, ...] = ()
     parameters: tuple[tuple[str, float], ...] = ()
+    scenario: str | Scenario = PUBLISHED_SCENARIO
 
 
 PUBLISHED_STUDY = StudySettings()
@@ -120,6 +126,7 @@ def _plain_settings(settings: StudySettings) -> StudySettings:
         car=plain_part("car", settings.car, CarParameters),
         drivers=tuple(map(_plain_driver, settings.drivers)),
         parameters=plain_values(settings.parameters),
+        scenario=_plain_scenario(settings.scenario),
     )
 
 
@@ -163,18 +170,21 @@ def trial_setup(settings: StudySettings, trial: Trial) -> TrialSetup:
         predictor=settings.predictor,
         weights=settings.weights or None,
         parameters=settings.parameters,
+        scenario=settings.scenario,
     )
 
 
 def with_files_read(settings: StudySettings) -> StudySettings:
-    """The settings with car and drivers as they are in their files now.
+    """The settings with car, drivers and scenario as they are in their files now.
 
     Raises:
         ValueError: If a file holds what it cannot.
         OSError: If it cannot be read.
     """
     return settings._replace(
-        car=_car(settings.car), drivers=tuple(map(driver_of, settings.drivers))
+        car=_car(settings.car),
+        drivers=tuple(map(driver_of, settings.drivers)),
+        scenario=_read_scenario(settings.scenario),
     )
 
 
@@ -193,6 +203,26 @@ def _plain_driver(driver: str | Driver) -> str | Driver:
     return plain_part("driver", driver, DriverParameters)
 
 
+def _plain_scenario(scenario: str | Scenario) -> str | Scenario:
+    """A name or file as it is; a scenario if it can be.
+
+    Raises:
+        ValueError: If it is neither.
+    """
+    if isinstance(scenario, str):
+        return scenario
+    if not isinstance(scenario, Scenario):
+        raise ValueError(
+            f"scenario is {scenario!r}; give a name, a file NAME.yaml, or Scenario"
+        )
+    return checked(scenario)
+
+
+def _read_scenario(scenario: str | Scenario) -> str | Scenario:
+    """A scenario of a file as it is there now; a name of one that ships as it is."""
+    return scenario if scenario in shipped() else scenario_named(scenario)
+
+
 def _driver(drivers: tuple[str | Driver, ...], participant: int) -> str | Driver:
     """Who drives as a participant: of the population, or one driver after another."""
     if not drivers:
@@ -208,7 +238,10 @@ def study_configuration(settings: StudySettings) -> dict[str, object]:
         OSError: If it cannot be read.
     """
     method = method_named(settings.method)
-    given = settings._asdict() | {
+    given = settings._asdict()
+    # A study on the published road says nothing of it, as before there were others.
+    del given["scenario"]
+    given |= {
         "method": settings.method if isinstance(settings.method, str) else method.name,
         "conditions": list(settings.conditions),
         "car": _named(settings.car),
@@ -221,8 +254,20 @@ def study_configuration(settings: StudySettings) -> dict[str, object]:
         "simulation_source": simulation_source(),
         **given,
         **_plugged_in(settings, method),
+        **_scenario(settings),
         **_thresholds(),
         "order": driving_order(settings),
+    }
+
+
+def _scenario(settings: StudySettings) -> dict[str, object]:
+    """The scenario by name or file, and what is in it."""
+    given = settings.scenario
+    if given == PUBLISHED_SCENARIO:
+        return {}
+    return {
+        "scenario": given if isinstance(given, str) else OWN,
+        "scenario_content": plain(scenario_named(given)),
     }
 
 
@@ -319,6 +364,8 @@ def settings_of(configuration: dict[str, Any]) -> StudySettings:
     # Any: each setting has a type of its own.
     chosen: dict[str, Any] = {n: configuration.get(n, usual[n]) for n in usual}
     chosen["drivers"] = tuple(chosen["drivers"])
+    if "scenario_content" in configuration:
+        chosen["scenario"] = scenario_of(configuration["scenario_content"])
     chosen["parameters"] = tuple(dict(chosen["parameters"]).items())
     return _checked_plan(StudySettings(**chosen))
 
@@ -344,7 +391,7 @@ def simulation_source() -> str:
     """
     package = Path(__file__).parents[1]
     digest = hashlib.sha256()
-    for room in COMPILED_ROOMS:
+    for room in (*COMPILED_ROOMS, "scenarios"):
         for file in sorted((package / room).rglob("*")):
             if file.is_file() and file.suffix != ".pyc":
                 digest.update(file.relative_to(package).as_posix().encode())

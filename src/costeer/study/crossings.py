@@ -1,4 +1,4 @@
-"""When a signal passes a level: the line between the lanes, a threshold of yaw.
+"""When a signal passes a level: a line between two lanes, a threshold of yaw.
 
 Instants between two samples are interpolated, so that they hardly depend on the
 sampling rate.
@@ -12,50 +12,59 @@ import numpy as np
 from costeer.study.definitions import (
     DEFAULTS,
     Columns,
-    Flags,
     MeasureParameters,
     Signal,
 )
+from costeer.study.lanes import lines
 
 LEFT = 1
 RIGHT = -1
 
 
 class Crossing(NamedTuple):
-    """The centre of gravity crosses the line between the lanes.
+    """The centre of gravity crosses a line between two lanes.
 
     Attributes:
         time: When [s].
         direction: -1 to the right, +1 to the left.
+        lane: That it leads to, counted from the right.
     """
 
     time: float
     direction: int
+    lane: int
 
 
 def line_crossings(
     columns: Columns, parameters: MeasureParameters = DEFAULTS
 ) -> tuple[Crossing, ...]:
-    """Where the centre of gravity crosses the line between the lanes."""
-    time, offset = columns["time"], _beyond_line(columns, parameters)
+    """Where the centre of gravity crosses lines between lanes, in order of time."""
+    found: list[Crossing] = []
+    for place, line in enumerate(lines(parameters)):
+        left = int(parameters.num_lanes) - 1 - place
+        offset = np.asarray(columns["lateral_position"] + line)
+        found += _crossings_of(columns["time"], offset, left)
+    return tuple(sorted(found, key=lambda crossing: crossing.time))
+
+
+def _crossings_of(time: Signal, offset: Signal, left: int) -> list[Crossing]:
+    """Crossings of one line.
+
+    Args:
+        time: [s], shape `(time,)`.
+        offset: Distance to the left of the line [m], shape `(time,)`.
+        left: Number of the lane on its left.
+    """
     rows = np.flatnonzero(np.diff(offset >= 0.0))
-    return tuple(
+    leftward = [bool(offset[row + 1] >= 0.0) for row in rows]
+    return [
         Crossing(
             time=_instant(time, offset, int(row), 0.0),
-            direction=LEFT if offset[row + 1] >= 0.0 else RIGHT,
+            direction=LEFT if to_left else RIGHT,
+            lane=left if to_left else left - 1,
         )
-        for row in rows
-    )
-
-
-def _beyond_line(columns: Columns, parameters: MeasureParameters) -> Signal:
-    """Distance to the left of the line between the lanes [m], shape `(time,)`."""
-    return np.asarray(columns["lateral_position"] + parameters.lane_width / 2.0)
-
-
-def in_left_lane(columns: Columns, parameters: MeasureParameters = DEFAULTS) -> Flags:
-    """Samples with the centre of gravity in the left lane, shape `(time,)`."""
-    return np.asarray(_beyond_line(columns, parameters) >= 0.0)
+        for row, to_left in zip(rows, leftward, strict=True)
+    ]
 
 
 def _instant(time: Signal, signal: Signal, row: int, level: float) -> float:

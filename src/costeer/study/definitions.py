@@ -16,10 +16,13 @@ Columns = Mapping[str, NDArray[Any]]
 
 
 class MeasureParameters(NamedTuple):
-    """Thresholds of the measures of driving; the road's and the car's width.
+    """Thresholds of the measures of driving; the road and the car's width.
 
     Attributes:
-        lane_width: d, of both lanes [m]. Source: the paper's simulator, Sec. III-A.
+        lane_width: d, of every lane [m]. Source: the paper's simulator, Sec. III-A; a
+            record's own road goes before it.
+        num_lanes: Lanes of this direction [-]. Source: as above.
+        overtaking_side: -1 right, +1 left [-]. Source: as above.
         car_width: Over the wheels [m]. Source: assumed, a passenger car's body.
         yaw_threshold: A lane change starts and ends here [rad]. Source: assumed,
             0.5 deg, above the yaw of lane keeping and below that of a slow change.
@@ -49,11 +52,16 @@ class MeasureParameters(NamedTuple):
             Source: assumed, as for the lock of the trigger.
         settled_duration: A car is settled if it stays so long straight, within
             `yaw_threshold`, and near the centre [s]. Source: assumed, as above.
-        any_lane: 1 if lane keeping counts in either lane, about its centre; 0 if in the
-            left one alone [-]. Source: the paper, whose drivers keep left.
+        any_lane: 1 if lane keeping counts in every lane, about its centre; 0 if, on two
+            lanes, in that one alone which is not for overtaking [-]. Source: the paper,
+            whose drivers keep left.
+        following_headway: Up to this time headway a car follows the one ahead [s].
+            Source: Vogel (2002), who found cars to drive freely above it.
     """
 
     lane_width: float = 3.5
+    num_lanes: float = 2.0
+    overtaking_side: float = -1.0
     car_width: float = 1.8
     yaw_threshold: float = radians(0.5)
     lateral_speed_threshold: float = 0.1
@@ -71,6 +79,7 @@ class MeasureParameters(NamedTuple):
     settled_offset: float = 0.3
     settled_duration: float = 0.5
     any_lane: float = 0.0
+    following_headway: float = 6.0
 
 
 DEFAULTS = MeasureParameters()

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from costeer.records.columns import LANE_CHANGING
-from costeer.study.crossings import LEFT, RIGHT, Crossing, line_crossings
+from costeer.study.crossings import Crossing, line_crossings
 from costeer.study.definitions import (
     DEFAULTS,
     Columns,
@@ -21,6 +21,7 @@ from costeer.study.definitions import (
     missing,
     under_assistance,
 )
+from costeer.study.lanes import adjacent_side, lanes
 
 TRUE = "true"
 EARLY = "early"
@@ -176,8 +177,8 @@ def _judged(
     row: int,
 ) -> Trigger:
     instant = float(columns["time"][row])
-    in_left = columns["lateral_position"][row] >= -parameters.lane_width / 2.0
-    direction = RIGHT if in_left else LEFT
+    lane = int(lanes(columns["lateral_position"][row], parameters))
+    direction = adjacent_side(parameters, lane)
     following = [
         crossing.time
         for crossing in crossings

@@ -13,7 +13,13 @@ from costeer.study.agreement import AgreementRow
 from costeer.study.outcome import DroppedRow, EffectRow, PairRow, SummaryRow
 from costeer.study.people import EXCLUSIONS_FILE, Exclusion
 from costeer.study.quantities import WORKLOAD
-from costeer.study.trial_tables import LANE_CHANGES_FILE, TRIALS_FILE, TRIGGERS_FILE
+from costeer.study.scenario_measures import ScenarioRow
+from costeer.study.trial_tables import (
+    LANE_CHANGES_FILE,
+    SCENARIO_FILE,
+    TRIALS_FILE,
+    TRIGGERS_FILE,
+)
 
 
 class Entry(NamedTuple):
@@ -203,6 +209,7 @@ def tables() -> dict[str, tuple[Entry, ...]]:
         TRIALS_FILE: _TRIALS,
         LANE_CHANGES_FILE: _LANE_CHANGES,
         TRIGGERS_FILE: _TRIGGERS,
+        SCENARIO_FILE: (*_WHICH, *explained(ScenarioRow)),
         **{file: explained(row) for file, row in _DOCUMENTED.items()},
     }
 

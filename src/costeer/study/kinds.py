@@ -73,6 +73,8 @@ _KINDS = {
     "weights": _TEXT,
     "drivers": _TEXTS,
     "parameters": _NUMBERS,
+    "scenario": _TEXT,
+    "scenario_content": Kind("a scenario", lambda value: isinstance(value, dict)),
     "costeer_version": _TEXT,
     "simulation_source": _TEXT,
     "method_name": _TEXT,

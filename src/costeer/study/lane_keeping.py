@@ -7,7 +7,7 @@ from math import isinf
 import numpy as np
 from jaxtyping import Float
 
-from costeer.study.crossings import excursion, in_left_lane, within
+from costeer.study.crossings import excursion, within
 from costeer.study.definitions import (
     DEFAULTS,
     Columns,
@@ -17,6 +17,7 @@ from costeer.study.definitions import (
     runs,
     unknown,
 )
+from costeer.study.lanes import centre, from_centre, home_lane, keeps_home
 from costeer.study.rounding import rounded_rate, rounding
 from costeer.study.segments import DroppedChange, LaneChange, Segments
 
@@ -32,10 +33,9 @@ def gathered(values: Signal, stretches: tuple[slice, ...]) -> Signal:
 def in_lane(columns: Columns, parameters: MeasureParameters = DEFAULTS) -> Signal:
     """Position from the centre of the lane that is kept [m], shape `(time,)`."""
     position = np.asarray(columns["lateral_position"])
-    if not parameters.any_lane:
-        return position
-    right = ~in_left_lane(columns, parameters)
-    return np.asarray(position + parameters.lane_width * right)
+    if keeps_home(parameters):
+        return np.asarray(position - centre(parameters, home_lane(parameters)))
+    return from_centre(position, parameters)
 
 
 def sdlp(
@@ -70,8 +70,8 @@ def time_to_line_crossing(
 ) -> Float[Signal, " time"]:
     """Time until a wheel reaches the line if the lateral speed stays [s].
 
-    The gap between the side of the car it moves to and the line of the left lane on
-    that side, over the lateral speed; 0 with the wheel over the line, infinite
+    The gap between the side of the car it moves to and the line of its lane on that
+    side, over the lateral speed; 0 with the wheel over the line, infinite
     without lateral speed.
 
     Args:
@@ -153,8 +153,5 @@ def _is_cut(dropped: DroppedChange) -> bool:
 
 
 def _off_centre(columns: Columns, parameters: MeasureParameters) -> Signal:
-    """Distance from the centre of the nearer lane [m], shape `(time,)`."""
-    position = columns["lateral_position"]
-    return np.asarray(
-        np.minimum(np.abs(position), np.abs(position + parameters.lane_width))
-    )
+    """Distance from the centre of the nearest lane [m], shape `(time,)`."""
+    return np.abs(from_centre(columns["lateral_position"], parameters))

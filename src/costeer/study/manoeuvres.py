@@ -5,7 +5,7 @@ from math import nan, radians
 import numpy as np
 
 from costeer.records.columns import LANE_CHANGING
-from costeer.study.crossings import LEFT, excursion, within
+from costeer.study.crossings import excursion, within
 from costeer.study.definitions import (
     DEFAULTS,
     Columns,
@@ -13,6 +13,7 @@ from costeer.study.definitions import (
     Signal,
     missing,
 )
+from costeer.study.lanes import centre, lanes
 from costeer.study.segments import LaneChange
 
 # Beside the threshold of the parameters, so that its influence can be reported.
@@ -28,7 +29,8 @@ def overshoot(
     """Distance from the new lane's centre at the first lateral extremum [m].
 
     The extremum is the first sample after the crossing at which the car no longer
-    moves towards the new lane. NaN if it does so until the record ends.
+    moves towards the new lane. NaN if it does so until the record ends, or goes on to
+    a lane beyond.
     """
     time, position = columns["time"], columns["lateral_position"]
     after = int(np.searchsorted(time, change.crossing_time, side="right"))
@@ -36,16 +38,18 @@ def overshoot(
     turned = np.flatnonzero(steps <= 0.0)
     if turned.size == 0:
         return nan
-    centre = 0.0 if change.direction == LEFT else -parameters.lane_width
-    return float(abs(position[after + int(turned[0])] - centre))
+    there = position[after + int(turned[0])]
+    beyond = (int(lanes(there, parameters)) - change.lane) * change.direction
+    return nan if beyond > 0 else float(abs(there - centre(parameters, change.lane)))
 
 
 def steering_velocity_rms(columns: Columns, change: LaneChange) -> float:
     """Root mean square of the steering-wheel rate from start to end [rad/s]."""
-    return rms(_steering_rate(columns)[_rows(columns, change)])
+    return rms(steering_rate(columns)[_rows(columns, change)])
 
 
-def _steering_rate(columns: Columns) -> Signal:
+def steering_rate(columns: Columns) -> Signal:
+    """Rate of the steering wheel [rad/s]; from the angle where it is not recorded."""
     if not missing(columns, "steering_wheel_rate"):
         return np.asarray(columns["steering_wheel_rate"])
     return np.asarray(np.gradient(columns["steering_wheel_angle"], columns["time"]))

@@ -19,8 +19,9 @@ from costeer.controller.replanning import ReplanningParameters
 from costeer.methods.conditions import CONDITION_NAMES, MANUAL
 from costeer.records.metadata import PERSON
 from costeer.records.record import read_record
+from costeer.study.definitions import DEFAULTS, MeasureParameters
 from costeer.study.folder import RECORDS, StudyFolder, read_study
-from costeer.study.measures import prepared
+from costeer.study.measures import parameters_of, prepared
 from costeer.study.outcome import WITHIN, PairRow, StudyTests, SummaryRow
 from costeer.study.people import People, Who, tested_answers
 from costeer.study.quantities import WORKLOAD, Quantity
@@ -28,16 +29,10 @@ from costeer.study.statistics import MEASURES, Measure, study_tests
 from costeer.study.trial_measures import trial_measures
 from costeer.study.trial_tables import (
     LANE_CHANGES_FILE,
+    SCENARIO_FILE,
     TRIALS_FILE,
     TRIGGERS_FILE,
 )
-
-LANE_LINE = -1.75
-"""Lateral position of the line between the lanes [m]: half a lane width, to the right
-of the left lane's centre."""
-
-LANE_TICKS = (-3.5, -1.75, 0.0)
-"""Right lane's centre, line between the lanes, left lane's centre [m]."""
 
 _RECORD_NAME = re.compile(r"(\d+)-([a-z]+(?:-[a-z]+)?)\.parquet")
 
@@ -56,6 +51,8 @@ class StudyMaterial(NamedTuple):
         people: Who drove, if these are people's drives and no study of costeer's.
         answers: Tests of what they answered; None without answers.
         beside: Virtual drivers to lay beside them.
+        scenario: Rows of `scenario_measures.csv`; None on the paper's scenario.
+        road: Parameters of the measures with the lanes that were driven on.
     """
 
     study: StudyFolder
@@ -68,6 +65,8 @@ class StudyMaterial(NamedTuple):
     people: People | None = None
     answers: StudyTests | None = None
     beside: StudyMaterial | None = None
+    scenario: pd.DataFrame | None = None
+    road: MeasureParameters = DEFAULTS
 
 
 def read_material(folder: Path, people: People | None = None) -> StudyMaterial:
@@ -88,16 +87,19 @@ def read_material(folder: Path, people: People | None = None) -> StudyMaterial:
     found = find_records(folder) if people is None else people.records
     # A record without a row was not believed when the tables were made.
     records = {k: path for k, path in found.items() if k in measured}
+    first = next(iter(records.values()), None)
     return StudyMaterial(
         study=study,
         trials=trials,
         lane_changes=lane_changes,
-        triggers=_read_triggers(folder / TRIGGERS_FILE, measured, people is not None),
+        triggers=_read_measured(folder / TRIGGERS_FILE, measured, people is not None),
         tests=tests,
         records=records,
         metadata=tuple(read_record(path, ()).metadata for path in records.values()),
         people=people,
         answers=None if people is None else tested_answers(people),
+        scenario=_read_measured(folder / SCENARIO_FILE, measured, people is not None),
+        road=DEFAULTS if first is None else parameters_of(read_record(first, ())),
     )
 
 
@@ -122,10 +124,10 @@ def _workload(trials: pd.DataFrame) -> list[Measure]:
     return [Measure(name) for name in given]
 
 
-def _read_triggers(
+def _read_measured(
     file: Path, measured: set[tuple[Who, str]], by_name: bool
 ) -> pd.DataFrame | None:
-    """The triggers of the trials that were measured; None if nobody judged them."""
+    """The rows of the trials that were measured; None if there is no such table."""
     if not file.exists():
         return None
     table = _read_table(file, by_name)

@@ -1,10 +1,11 @@
-"""The rows of `trials.csv`, `lane_changes.csv` and `triggers.csv`, in SI units.
+"""The rows of the tables of a study, in SI units.
 
 What a measure is stands in the files beside this one and in docs/measures.md. What
 could not be computed is NaN here; `trial_measures` says why.
 """
 
-from math import isclose, nan
+from collections.abc import Mapping
+from math import inf, isclose, nan
 
 from costeer.records.columns import TrialRecord
 from costeer.study.definitions import DEFAULTS, MeasureParameters, incomplete
@@ -18,6 +19,8 @@ from costeer.study.manoeuvres import (
     speed_measures,
     steering_velocity_rms,
 )
+from costeer.study.scenario import surroundings
+from costeer.study.scenario_measures import scenario_rows
 from costeer.study.segments import LaneChange, Segments
 from costeer.study.trial_measures import Trial, prepare, trial_measures
 from costeer.study.trigger_costs import trigger_costs
@@ -95,6 +98,25 @@ def trigger_rows(
     return [{**_identity(record), **each} for each in trigger_costs(trial)]
 
 
+def scenario_measure_rows(
+    record: TrialRecord, parameters: MeasureParameters = DEFAULTS
+) -> list[Row]:
+    """The rows of a trial in `scenario_measures.csv`.
+
+    Args:
+        record: The trial.
+        parameters: Thresholds of the measures.
+
+    Returns:
+        Per value, column names and values; none on the paper's scenario.
+    """
+    around = surroundings(record)
+    if around.is_papers:
+        return []
+    found = scenario_rows(prepared(record, parameters), around)
+    return [{**_identity(record), **each._asdict()} for each in found]
+
+
 def prepared(record: TrialRecord, parameters: MeasureParameters = DEFAULTS) -> Trial:
     """A trial ready to be measured, with what its description says of it."""
     method = str(record.metadata.get("method") or "")
@@ -104,11 +126,32 @@ def prepared(record: TrialRecord, parameters: MeasureParameters = DEFAULTS) -> T
 def parameters_of(
     record: TrialRecord, parameters: MeasureParameters = DEFAULTS
 ) -> MeasureParameters:
-    """The parameters with the record's own re-plan gain, if it says one."""
-    replan_gain = record.metadata.get("replan_gain")
-    if not isinstance(replan_gain, (int, float)):
-        return parameters
-    return parameters._replace(replan_gain=float(replan_gain))
+    """The parameters with the record's own road and re-plan gain, if it says them."""
+    told: dict[str, object] = {"replan_gain": record.metadata.get("replan_gain")}
+    configuration = record.metadata.get("configuration")
+    road = configuration.get("road") if isinstance(configuration, Mapping) else None
+    if isinstance(road, Mapping):
+        told |= {name: road.get(name) for name in _OF_THE_ROAD}
+    known = {name: value for name in told if (value := _number(told, name)) is not None}
+    return parameters._replace(**known)
+
+
+_OF_THE_ROAD = {
+    "lane_width": (0.5, 20.0),
+    "num_lanes": (1.0, 20.0),
+    "overtaking_side": (-1.0, 1.0),
+}
+"""What the measures take from the road that a record says it was driven on, and the
+range in which it is believed."""
+
+
+def _number(told: Mapping[str, object], name: str) -> float | None:
+    """A number that a record tells; None if it is none that can be."""
+    value = told[name]
+    if not isinstance(value, (int, float)) or isinstance(value, bool):
+        return None
+    low, high = _OF_THE_ROAD.get(name, (-inf, inf))
+    return float(value) if low <= value <= high else None
 
 
 def strength(factor: object) -> str:

@@ -15,7 +15,12 @@ from costeer.methods.conditions import CONDITION_NAMES
 from costeer.records.record import read_record
 from costeer.study.answers import answer_tests
 from costeer.study.folder import StudyFolder, configuration_hash
-from costeer.study.measures import lane_change_rows, trial_row, trigger_rows
+from costeer.study.measures import (
+    lane_change_rows,
+    scenario_measure_rows,
+    trial_row,
+    trigger_rows,
+)
 from costeer.study.outcome import StudyTests
 from costeer.study.quantities import WORKLOAD, WORKLOAD_ITEMS
 from costeer.study.trial_tables import TrialRows, write_csv, write_trial_tables
@@ -163,6 +168,7 @@ def _rows_of(drive: Drive) -> TrialRows:
         measures={**trial_row(record, drive.order), **scores},
         lane_changes=lane_change_rows(record),
         triggers=trigger_rows(record),
+        scenario=scenario_measure_rows(record),
     )
 
 

@@ -8,9 +8,11 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from costeer.plant.fleet import MOST_CARS
 from costeer.records.adaptation import AS_IT_IS, Adaptation, adapted, cleaned
+from costeer.records.cars import car_columns
 from costeer.records.checks import converted
-from costeer.records.columns import COLUMNS_BY_NAME
+from costeer.records.columns import COLUMNS_BY_NAME, Column
 from costeer.records.names import empty_told, groups
 from costeer.records.times import no_time
 from costeer.study.definitions import Columns
@@ -31,6 +33,11 @@ class Stretch(NamedTuple):
     ignored: tuple[str, ...]
     notes: tuple[str, ...] = ()
 
+
+_DECLARED: dict[str, Column] = COLUMNS_BY_NAME | {
+    column.name: column for column in car_columns(MOST_CARS)
+}
+"""Columns of a record, those of other cars among them, by name."""
 
 _NEEDED = ("time", "lateral_position", "yaw_angle", "steering_wheel_angle")
 """Columns that the measures rest on; one that cannot be read is refused."""
@@ -58,7 +65,7 @@ def stretches(
     notes += unused
     if "time" not in known:
         raise ValueError(no_time(columns))
-    ignored = tuple(k for k in renamed if k not in COLUMNS_BY_NAME and k != key)
+    ignored = tuple(k for k in renamed if k not in _DECLARED and k != key)
     parts = [("", known)]
     if key:
         notes += empty_told(key, renamed[key])
@@ -95,7 +102,7 @@ def _known(columns: Columns) -> tuple[dict[str, NDArray[Any]], list[str]]:
     known: dict[str, NDArray[Any]] = {}
     notes = []
     for name in columns:
-        if name not in COLUMNS_BY_NAME:
+        if name not in _DECLARED:
             continue
         try:
             known[name] = _as_kind(name, columns[name])
@@ -111,7 +118,7 @@ def _as_kind(name: str, values: NDArray[Any]) -> NDArray[Any]:
 
     Infinity is no value of anything that is measured: such a sample is undefined.
     """
-    column = COLUMNS_BY_NAME[name]
+    column = _DECLARED[name]
     if column.kind == "float64" and values.dtype.kind in "iu":
         values = values.astype(np.float64)
     if column.kind in ("int8", "bool") and values.dtype.kind in "fiu":

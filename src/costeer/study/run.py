@@ -170,7 +170,11 @@ def study_command(settings: StudySettings) -> str:
     default = PUBLISHED_STUDY._asdict()
     words = ["costeer", "study", "--out", "FOLDER"]
     for name, value in settings._asdict().items():
-        if value != default[name]:
+        # Another scenario has a length and a speed of its own.
+        elsewhere = (
+            name in ("length", "speed") and settings.scenario != default["scenario"]
+        )
+        if value != default[name] or elsewhere:
             words += _option(name, value)
     return shlex.join(words)
 
@@ -178,7 +182,8 @@ def study_command(settings: StudySettings) -> str:
 def _objects(settings: StudySettings) -> list[str]:
     """What no command line can name, as `method pi-keeping`."""
     given = {
-        name: getattr(settings, name) for name in ("method", "car", "predictor")
+        name: getattr(settings, name)
+        for name in ("method", "car", "predictor", "scenario")
     } | {f"driver {n}": each for n, each in enumerate(settings.drivers, 1)}
     return [
         f"{name} {getattr(part, 'name', '')}".rstrip()

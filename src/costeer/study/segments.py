@@ -13,7 +13,6 @@ import numpy as np
 from costeer.study.crossings import (
     Crossing,
     excursion,
-    in_left_lane,
     line_crossings,
 )
 from costeer.study.definitions import (
@@ -28,6 +27,7 @@ from costeer.study.definitions import (
     runs,
     too_short,
 )
+from costeer.study.lanes import in_kept_lane
 
 SEGMENT_COLUMNS = ("time", "lateral_position", "yaw_angle")
 
@@ -41,6 +41,7 @@ class LaneChange(NamedTuple):
         start_time: Last yaw within the threshold before the crossing [s].
         crossing_time: The centre of gravity crosses the line [s].
         end_time: First yaw within the threshold after the crossing [s].
+        lane: That it leads to, counted from the right.
     """
 
     number: int
@@ -48,6 +49,7 @@ class LaneChange(NamedTuple):
     start_time: float
     crossing_time: float
     end_time: float
+    lane: int
 
 
 class DroppedChange(NamedTuple):
@@ -108,12 +110,13 @@ def segment(
     changes, dropped = _sorted_changes(columns, parameters, crossings)
     spans = [(change.start_time, change.end_time) for change in changes]
     spans += [(drop.start_time, drop.end_time) for drop in dropped]
-    inside = in_left_lane(columns, parameters) | bool(parameters.any_lane)
+    inside = in_kept_lane(columns, parameters)
     keeping = inside & ~_near(columns["time"], spans, parameters.lane_change_margin)
     keeping &= ~event_zone(columns)
     if LEFT_OUT in columns:
         keeping &= ~columns[LEFT_OUT]
-    no_keeping = _no_keeping(columns["time"], inside, keeping)
+    side = "left" if parameters.overtaking_side < 0.0 else "right"
+    no_keeping = _no_keeping(columns["time"], inside, keeping, side)
     return Segments(
         crossings=crossings,
         changes=changes,
@@ -124,11 +127,11 @@ def segment(
     )
 
 
-def _no_keeping(time: Signal, inside: Flags, keeping: Flags) -> str:
+def _no_keeping(time: Signal, inside: Flags, keeping: Flags, side: str) -> str:
     """Why there is no lane keeping; empty if there is."""
     if not inside.any():
         return (
-            "the car is never in the left lane, where lane keeping is measured; to "
+            f"the car is never in the {side} lane, where lane keeping is measured; to "
             "measure the lane driven in, set any_lane (on the command line: --any-lane)"
         )
     seconds = float(keeping.sum() * (time[-1] - time[0]) / (time.size - 1))
@@ -170,6 +173,7 @@ def _sorted_changes(
                     start_time=start,
                     crossing_time=crossing.time,
                     end_time=end,
+                    lane=crossing.lane,
                 )
             )
     return tuple(changes), tuple(dropped)
@@ -186,9 +190,10 @@ def _fault(span: tuple[float, float] | None, parameters: MeasureParameters) -> s
 
 
 def _crossed_back(crossings: tuple[Crossing, ...], minimum_stay: float) -> list[str]:
-    """Per crossing: empty, or that another follows or precedes it too closely."""
+    """Per crossing: empty, or that one back follows or precedes it too closely."""
     times = np.array([crossing.time for crossing in crossings])
-    hasty = np.diff(times) < minimum_stay
+    sides = np.array([crossing.direction for crossing in crossings])
+    hasty = (np.diff(times) < minimum_stay) & (np.diff(sides) != 0)
     forth = np.concatenate([hasty, [False]])
     back = np.concatenate([[False], hasty])
     reason = f"crossed back within {minimum_stay:g} s"

@@ -66,8 +66,8 @@ def prepare(
 def trial_measures(trial: Trial) -> Measures:
     """Every measure of a trial by its name in `trials.csv`, in that order."""
     return (
-        _lane_keeping(trial)
-        | _course(trial)
+        lane_keeping_measures(trial)
+        | course_measures(trial)
         | _lane_changes(trial)
         | _departures(trial)
         | _detection(trial)
@@ -80,11 +80,12 @@ def sampling_rate(time: Signal) -> float:
     return (time.size - 1) / float(time[-1] - time[0]) if time.size > 1 else nan
 
 
-def _lane_keeping(trial: Trial) -> Measures:
+def lane_keeping_measures(trial: Trial) -> Measures:
+    """SDLP, reversal rate, driver's torque and times to line crossing."""
     return {
         "sdlp": _position_deviation(trial),
         "swrr": _reversal_rate(trial),
-        "driver_torque_rms": _torque(trial),
+        "driver_torque_rms": torque_rms(trial),
     } | _line_crossing_times(trial)
 
 
@@ -116,7 +117,8 @@ def _reversal_rate(trial: Trial) -> Measure:
     )
 
 
-def _torque(trial: Trial) -> Measure:
+def torque_rms(trial: Trial) -> Measure:
+    """Root mean square of the driver's torque over every sample [N·m]."""
     return _of_column(trial, "driver_torque", "N·m", rms, gaps=True)
 
 
@@ -130,7 +132,8 @@ def _line_crossing_times(trial: Trial) -> Measures:
     return dict(zip(names, times, strict=True))
 
 
-def _course(trial: Trial) -> Measures:
+def course_measures(trial: Trial) -> Measures:
+    """Duration, distance and mean speed."""
     return {
         "duration": _of_column(trial, "time", "s", _extent),
         "distance": _of_column(trial, "longitudinal_position", "m", _extent),
@@ -194,7 +197,7 @@ def _detection(trial: Trial) -> Measures:
     if isinstance(found, str):
         reason = found
         return {name: unknown(unit, reason) for name, unit in _DETECTION_UNITS.items()}
-    kilometres = _course(trial)["distance"]
+    kilometres = course_measures(trial)["distance"]
     false = triggers.count(found, triggers.FALSE)
     missed = triggers.num_missed(found)
     return {

@@ -1,4 +1,4 @@
-"""`trials.csv`, `lane_changes.csv`, `triggers.csv`: rows per trial and per event.
+"""The tables of measures: rows per trial, per event, and per value of a scenario.
 
 Numbers are written so that they read back bit for bit; what is undefined, such as
 the duration of a lane change in manual driving, is an empty cell.
@@ -21,6 +21,7 @@ from costeer.study.trigger_costs import COST_COLUMNS
 TRIALS_FILE = "trials.csv"
 LANE_CHANGES_FILE = "lane_changes.csv"
 TRIGGERS_FILE = "triggers.csv"
+SCENARIO_FILE = "scenario_measures.csv"
 
 LANE_CHANGE_COLUMNS = (
     "participant",
@@ -73,20 +74,30 @@ class TrialRows(NamedTuple):
         measures: Its row of `trials.csv`.
         lane_changes: Its rows of `lane_changes.csv`, in time.
         triggers: Its rows of `triggers.csv`, in time.
+        scenario: Its rows of `scenario_measures.csv`; none on the paper's scenario.
     """
 
     measures: Row
     lane_changes: Sequence[Row]
     triggers: Sequence[Row] = ()
+    scenario: Sequence[Row] = ()
 
 
 def write_trial_tables(folder: Path, trials: Sequence[TrialRows]) -> None:
-    """Write the three tables, rows in the order of the trials."""
+    """Write the tables, rows in the order of the trials.
+
+    That of the scenario is there only if it has rows.
+    """
     write_csv(folder / TRIALS_FILE, [each.measures for each in trials])
     changes = [row for each in trials for row in each.lane_changes]
     write_csv(folder / LANE_CHANGES_FILE, changes, LANE_CHANGE_COLUMNS)
     events = [row for each in trials for row in each.triggers]
     write_csv(folder / TRIGGERS_FILE, events, TRIGGER_COLUMNS)
+    values = [row for each in trials for row in each.scenario]
+    if values:
+        write_csv(folder / SCENARIO_FILE, values)
+    else:
+        (folder / SCENARIO_FILE).unlink(missing_ok=True)
 
 
 def write_csv(file: Path, rows: Sequence[Row], columns: Sequence[str] = ()) -> None:

@@ -13,7 +13,12 @@ from costeer.records.record import TrialRecord, read_record, write_record
 from costeer.study.configuration import StudySettings, trial_setup
 from costeer.study.design import Trial, plan_trials
 from costeer.study.folder import StudyFolder, record_path
-from costeer.study.measures import lane_change_rows, trial_row, trigger_rows
+from costeer.study.measures import (
+    lane_change_rows,
+    scenario_measure_rows,
+    trial_row,
+    trigger_rows,
+)
 from costeer.study.trial_tables import TrialRows
 
 LENGTH_OF_TRY = 150.0
@@ -111,6 +116,7 @@ def _measured(trial: Trial, record: TrialRecord, resumed: bool) -> TrialDone:
         measures=trial_row(record, trial.order),
         lane_changes=lane_change_rows(record),
         triggers=trigger_rows(record),
+        scenario=scenario_measure_rows(record),
     )
     time = record.columns["time"]
     return TrialDone(rows, float(time[-1] - time[0]), resumed)

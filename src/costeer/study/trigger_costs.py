@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from costeer.study.crossings import LEFT, within
+from costeer.study.crossings import within
 from costeer.study.definitions import (
     Columns,
     Flags,
@@ -21,6 +21,7 @@ from costeer.study.definitions import (
     runs,
 )
 from costeer.study.detection import FALSE
+from costeer.study.lanes import centre
 from costeer.study.manoeuvres import overshoot, rms
 from costeer.study.trial_measures import Trial
 from costeer.study.trigger_episodes import Episode, episodes
@@ -115,8 +116,7 @@ def _place(trial: Trial, episode: Episode, rows: slice) -> Row:
 
 def _from_centre(columns: Columns, parameters: MeasureParameters, lane: int) -> Signal:
     """Distance to the left of a lane's centre [m], shape `(time,)`."""
-    centre = 0.0 if lane == LEFT else -parameters.lane_width
-    return np.asarray(columns["lateral_position"] - centre)
+    return np.asarray(columns["lateral_position"] - centre(parameters, lane))
 
 
 def _driver(columns: Columns, rows: slice) -> Row:
@@ -208,4 +208,4 @@ def _aims_at(columns: Columns, lane: int) -> Flags:
     if "target_lane" not in columns:
         return np.ones(len(columns["time"]), dtype=bool)
     target: np.ma.MaskedArray[Any, Any] = np.ma.masked_array(columns["target_lane"])
-    return np.asarray(np.ma.filled(target == (1 if lane == LEFT else 0), True))
+    return np.asarray(np.ma.filled(target == lane, True))

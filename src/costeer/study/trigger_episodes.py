@@ -10,9 +10,10 @@ from __future__ import annotations
 from math import inf, nan
 from typing import NamedTuple
 
-from costeer.study.crossings import Crossing, in_left_lane
+from costeer.study.crossings import Crossing
 from costeer.study.definitions import Columns, MeasureParameters
 from costeer.study.detection import FALSE, Detection, Trigger, detect
+from costeer.study.lanes import lanes
 from costeer.study.segments import LaneChange, Segments
 from costeer.study.trial_measures import Trial
 
@@ -29,8 +30,8 @@ class Episode(NamedTuple):
         direction: Of trigger or crossing: -1 to the right, +1 to the left.
         crossing_time: Of the intended crossing [s]; NaN if false.
         lead: Crossing minus trigger [s]; 0 if missed, NaN if false.
-        lane: That the driver means to be in, after the crossing if there is one: -1
-            the right one, +1 the left one.
+        lane: That the driver means to be in, after the crossing if there is one,
+            counted from the right.
         start_time: The trigger if false, else the lane change's start [s].
         end_time: Of the episode [s]. Start and end are NaN if the intended crossing
             makes no lane change.
@@ -81,14 +82,14 @@ def episodes(trial: Trial) -> tuple[Episode, ...] | str:
 
 
 def _meant_lane(judged: _Judged, instant: float) -> int:
-    """The lane that the driver means to be in: -1 the right one, +1 the left one.
+    """The lane that the driver means to be in, counted from the right.
 
     That which the last intended crossing led to. A crossing that only the guidance
     wanted does not change it. Before any crossing it is the lane of the first sample.
     """
-    before = [c.direction for c in judged.found.crossings if c.time <= instant]
-    began_left = bool(in_left_lane(judged.columns, judged.parameters)[0])
-    return before[-1] if before else (1 if began_left else -1)
+    before = [c.lane for c in judged.found.crossings if c.time <= instant]
+    began = lanes(judged.columns["lateral_position"][:1], judged.parameters)
+    return before[-1] if before else int(began[0])
 
 
 def _missed(found: Detection) -> list[Crossing]:
@@ -104,8 +105,8 @@ def _place(episode: Episode) -> float:
 def _of_trigger(judged: _Judged, trigger: Trigger) -> Episode:
     if trigger.verdict == FALSE:
         return _of_false(judged, trigger)
-    crossing = Crossing(trigger.crossing_time, trigger.direction)
-    return _of_crossing(judged, crossing)._replace(
+    announced = [c for c in judged.found.crossings if c.time == trigger.crossing_time]
+    return _of_crossing(judged, announced[0])._replace(
         kind=trigger.verdict,
         time=trigger.time,
         lead=trigger.crossing_time - trigger.time,
@@ -140,7 +141,7 @@ def _of_crossing(judged: _Judged, crossing: Crossing) -> Episode:
         direction=crossing.direction,
         crossing_time=crossing.time,
         lead=0.0,
-        lane=crossing.direction,
+        lane=crossing.lane,
         start_time=change.start_time if change else nan,
         end_time=change.end_time if change else nan,
         limit_time=_limit(judged, crossing.time),

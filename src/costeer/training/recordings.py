@@ -43,6 +43,7 @@ from costeer.training.tables import (
     resampled,
     uneven_told,
     with_distance,
+    with_side,
 )
 
 _NEEDED = ("time", "longitudinal_velocity")
@@ -131,7 +132,13 @@ def _notes(name: str, columns: Columns) -> tuple[str, ...]:
 
 
 def _contradicting(name: str, columns: Columns) -> list[str]:
-    """What the columns of one stretch say against each other."""
+    """What the columns of one stretch say against each other.
+
+    Where the side of the adjacent lane is given, the lanes are not those of the
+    two-lane road, and positions cannot be held against them.
+    """
+    if "adjacent_side" in columns:
+        columns = {key: values for key, values in columns.items() if key != "lane"}
     return [f"{name}: {each}" for each in contradictions(columns)]
 
 
@@ -268,6 +275,7 @@ def recordings_of(
     if record.metadata:
         driver = f"{record.metadata['seed']}-{record.metadata['participant']}"
         columns, dropped = cleaned(columns, adaptation)
+        columns = with_side(columns, record.metadata)
         before += [f"{name}: {each}" for each in dropped]
         return _with_notes(runs(driver, name, columns), before)
     _check_names(name, columns)

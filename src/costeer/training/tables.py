@@ -71,6 +71,30 @@ def with_distance(columns: Columns) -> dict[str, NDArray[Any]]:
     return found
 
 
+def with_side(
+    columns: Columns, metadata: Mapping[str, object]
+) -> dict[str, NDArray[Any]]:
+    """Columns of a trial record, with the adjacent side if its road has more lanes.
+
+    The distance was measured to the lane on the overtaking side, from the outermost
+    lane of that side to the other.
+
+    Args:
+        columns: Of the record.
+        metadata: Its description, with the road that was driven on.
+    """
+    configuration = metadata.get("configuration")
+    road = configuration.get("road") if isinstance(configuration, Mapping) else None
+    told = road if isinstance(road, Mapping) else {}
+    count, side = told.get("num_lanes", 2), told.get("overtaking_side", ADJACENT_RIGHT)
+    known = isinstance(count, int | float) and side in (ADJACENT_LEFT, ADJACENT_RIGHT)
+    if not known or count <= 2 or "lane" not in columns:
+        return dict(columns)
+    lane = np.asarray(columns["lane"], np.int64) + int(side)
+    there = (lane >= 0) & (lane < count)
+    return {**columns, "adjacent_side": np.where(there, side, -side).astype(np.int8)}
+
+
 def on_two_lanes(columns: Columns) -> bool:
     """Whether the lanes are those of a two-lane road."""
     return "lane" in columns and set(np.unique(columns["lane"])) <= {0, 1}

@@ -15,8 +15,8 @@ from costeer.plant.fleet import KINDS as KIND_ROWS
 from costeer.plant.fleet import FleetParameters, num_cars
 from costeer.plant.parameters import CarParameters
 from costeer.plant.stretches import MOST_STRETCHES
-from costeer.scenarios.definition import EVENT_KINDS, KINDS, SIDES, Scenario
-from costeer.scenarios.reading import checked, speed_of
+from costeer.scenarios.definition import EVENT_KINDS, KINDS, SIDES, Scenario, speed_of
+from costeer.scenarios.reading import checked
 from costeer.scenarios.world import Draw, world_of
 
 _LONGEST = 200_000.0

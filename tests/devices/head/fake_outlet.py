@@ -7,6 +7,8 @@ from uuid import uuid4
 
 import pylsl
 
+from tests.waiting import PATIENCE
+
 
 class FakeOutlet:
     """An outlet of the lab streaming layer with labels and units."""
@@ -25,5 +27,10 @@ class FakeOutlet:
         self._outlet = pylsl.StreamOutlet(info)
 
     def send(self, *sample: float, age: float = 0.0) -> None:
-        """Send a sample that was measured `age` ago [s]."""
+        """Send a sample that was measured `age` ago [s], once somebody listens.
+
+        Who has begun to read is heard of later on a busy machine; a sample that is sent
+        before goes to nobody.
+        """
+        assert self._outlet.wait_for_consumers(PATIENCE)
         self._outlet.push_sample(list(sample), pylsl.local_clock() - age)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import json
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -55,14 +56,17 @@ def material(num_drivers: int = 3, network: dict[str, Any] | None = None) -> Mat
     return Material(found, facts, "made drives", network or {})
 
 
-FULL = material(network={"curves": CURVES, "hidden_size": 8})
+@cache
+def full() -> Material:
+    """A judgement with all there is."""
+    return material(network={"curves": CURVES, "hidden_size": 8})
 
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     out = tmp_path_factory.mktemp("report") / "judged"
     prepare(out)
-    write_report(out, FULL)
+    write_report(out, full())
     return out
 
 
@@ -117,7 +121,7 @@ def test_tables_hold_the_numbers_of_the_json(folder: Path) -> None:
 
 def test_the_same_judgement_gives_the_same_bytes(folder: Path, tmp_path: Path) -> None:
     prepare(tmp_path / "again")
-    write_report(tmp_path / "again", FULL)
+    write_report(tmp_path / "again", full())
     for path in folder.rglob("*"):
         if path.is_file():
             other = tmp_path / "again" / path.relative_to(folder)
@@ -126,7 +130,7 @@ def test_the_same_judgement_gives_the_same_bytes(folder: Path, tmp_path: Path) -
 
 def test_a_monotone_change_of_the_score_changes_no_verdict() -> None:
     # The rival says the same in another scale: nobody is better.
-    told = dict(outcomes(FULL))
+    told = dict(outcomes(full()))
     assert told["Area under precision and recall against the others"] == (
         "Tied with The rival."
     )
@@ -138,9 +142,9 @@ def test_an_earlier_report_is_written_over_and_its_extra_figures_go(
 ) -> None:
     out = tmp_path / "judged"
     prepare(out)
-    write_report(out, FULL)
+    write_report(out, full())
     prepare(out)
-    write_report(out, FULL._replace(network={}))
+    write_report(out, full()._replace(network={}))
     assert not (out / "figures" / "learning-curves.svg").exists()
     assert "holds no learning curves" in (out / "report.html").read_text()
 
@@ -152,21 +156,21 @@ def test_one_driver_has_no_spread() -> None:
 
 def test_without_curves_nothing_is_drawn_of_the_learning() -> None:
     with styled():
-        assert draw_learning(FULL._replace(network={})).figure is None
+        assert draw_learning(full()._replace(network={})).figure is None
 
 
 def test_each_predictor_looks_its_own_way_and_the_judged_one_is_solid() -> None:
-    found = looks(FULL)
+    found = looks(full())
     assert len(set(found.values())) == len(found) == 2
     assert found["judged"].line == (0.0, ())
 
 
 def test_each_driver_has_three_scores() -> None:
-    areas, leads, false = driver_scores(FULL.assessment.judged)
+    areas, leads, false = driver_scores(full().assessment.judged)
     assert len(areas) == len(leads) == len(false) == 3
     assert ((areas > 0.0) & (areas <= 1.0)).all()
-    total = FULL.facts["at_false_rate"]["false_per_km"]
-    distances = FULL.assessment.judged.judgement.operating.kilometres
+    total = full().facts["at_false_rate"]["false_per_km"]
+    distances = full().assessment.judged.judgement.operating.kilometres
     assert np.average(false, weights=distances) == pytest.approx(total)
 
 

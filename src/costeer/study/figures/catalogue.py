@@ -15,6 +15,7 @@ from costeer.study.figures import (
     inconsistency,
     signals,
     timing,
+    traffic,
     trajectories,
     workload,
 )
@@ -32,6 +33,7 @@ FIGURE_NAMES: tuple[str, ...] = (
     gain.NAME,
     timing.NAME,
     agreement.NAME,
+    traffic.NAME,
 )
 """Stems of all files in `figures/`."""
 
@@ -60,3 +62,4 @@ def draw_figures(material: StudyMaterial) -> Iterator[Exhibit]:
     if not no_verdict:
         yield timing.draw(material, disputes(material))
     yield from agreement.draw(material)
+    yield from traffic.draw(material)

@@ -23,9 +23,11 @@ from costeer.pages.style import (
 )
 from costeer.records.record import read_record
 from costeer.study.crossings import RIGHT
+from costeer.study.definitions import MeasureParameters
 from costeer.study.figures.colours import condition_colour
 from costeer.study.figures.episodes import falls, rises
-from costeer.study.material import LANE_LINE, LANE_TICKS, StudyMaterial
+from costeer.study.lanes import centre, lines
+from costeer.study.material import StudyMaterial
 from costeer.study.people import Who
 from costeer.study.quantities import DEG
 
@@ -86,7 +88,7 @@ def draw(material: StudyMaterial, strength: str) -> Exhibit:
         axes = dict(zip(shown, (row[column] for row in grid), strict=True))
         _draw_column(axes, key, moments[key], moments.get(MANUAL))
     for signal, row in zip(shown, grid, strict=True):
-        _share_range(row, signal)
+        _share_range(row, signal, material.road)
     figure.align_ylabels([row[0] for row in grid])
     handles = _legend(strength, MANUAL in moments)
     figure.legend(handles=handles, ncols=len(handles), loc="upper right")
@@ -120,7 +122,7 @@ def _caption(participant: Who, strength: str, with_manual: bool) -> str:
         f"with {strength} guidance; time from the crossing of the lane line. {manual}"
         "Shaded: mode lane changing. Guidance torque is what the motor gives. Left is "
         "positive; lateral position is measured from the left lane's centre, dashed is "
-        "the line between the lanes. Chosen by rule: the first participant with the "
+        "a line between two lanes. Chosen by rule: the first participant with the "
         "most conditions driven."
     )
 
@@ -198,14 +200,20 @@ def _shade(panel: Axes, time: NDArray[np.float64], changing: NDArray[np.bool_]) 
         panel.axvspan(time[start], time[end], facecolor=SHADE, linewidth=0, zorder=-1)
 
 
-def _share_range(row: list[Axes], signal: Signal) -> None:
+def _lane_ticks(road: MeasureParameters) -> list[float]:
+    """Centres of the lanes; of two lanes also the line between them [m]."""
+    ticks = [centre(road, lane) for lane in range(int(road.num_lanes))]
+    return sorted([*ticks, *(-line for line in lines(road) if len(ticks) == 2)])
+
+
+def _share_range(row: list[Axes], signal: Signal, road: MeasureParameters) -> None:
     """Give the panels of a row one range, and only the first its label and numbers."""
     if signal.column in _UNIT_RANGE:
         low, high = -0.03, 1.06
         row[0].set_yticks([0.0, 0.5, 1.0])
     else:
         if signal.column == "lateral_position":
-            row[0].set_yticks(LANE_TICKS)
+            row[0].set_yticks(_lane_ticks(road))
         low = min(panel.get_ylim()[0] for panel in row)
         high = max(panel.get_ylim()[1] for panel in row)
     for panel in row:
@@ -213,7 +221,8 @@ def _share_range(row: list[Axes], signal: Signal) -> None:
         panel.set_ylim(low, high)
         panel.tick_params(labelleft=panel is row[0])
         if signal.column == "lateral_position":
-            panel.axhline(LANE_LINE, color=FAINT, linewidth=0.7, linestyle=(0, (6, 4)))
+            for line in lines(road):
+                panel.axhline(-line, color=FAINT, linewidth=0.7, linestyle=(0, (6, 4)))
     row[0].set_ylabel(signal.label)
 
 

@@ -25,7 +25,9 @@ from costeer.pages.style import (
 )
 from costeer.records.record import read_record
 from costeer.study.crossings import LEFT, RIGHT
-from costeer.study.material import LANE_LINE, LANE_TICKS, StudyMaterial
+from costeer.study.definitions import MeasureParameters
+from costeer.study.lanes import lines
+from costeer.study.material import StudyMaterial
 from costeer.study.people import Who
 from costeer.study.quantities import half_width
 
@@ -87,6 +89,7 @@ def draw(material: StudyMaterial) -> Exhibit:
         rows = grid[2 * at : 2 * at + 2] if apart else grid[at : at + 1]
         for column, duration in enumerate(durations):
             _draw_panel(rows[0][column], means, duration, direction)
+            _draw_lanes(rows[0][column], material.road.lane_width)
             if apart:
                 _draw_difference(rows[1][column], apart, duration, direction)
         rows[0][0].set_ylabel("Lateral position [m]")
@@ -100,7 +103,8 @@ def draw(material: StudyMaterial) -> Exhibit:
         fontsize=NORMAL,
         handlelength=2.8,
     )
-    return Exhibit(NAME, TITLE, _caption(own, means), _DESCRIPTION, figure)
+    words = _caption(own, means, material.road)
+    return Exhibit(NAME, TITLE, words, _DESCRIPTION, figure)
 
 
 def _label(grid: list[list[Axes]]) -> None:
@@ -137,7 +141,7 @@ def own_trajectories(material: StudyMaterial) -> dict[Key, Own]:
         record = read_record(path, ["time", "lateral_position"])
         time, position = record.columns["time"], record.columns["lateral_position"]
         for direction, crossings in rows.groupby("direction")["crossing_time"]:
-            aligned = _aligned(time, position, crossings)
+            aligned = _aligned(time, position, crossings, material.road)
             known = own.setdefault((str(name), int(direction)), Own({}, {}))
             known.positions[participant] = _column_means(aligned)
             known.changes[participant] = len(aligned)
@@ -167,15 +171,24 @@ def differences(own: dict[Key, Own]) -> dict[Key, Mean]:
 
 
 def _aligned(
-    time: NDArray[np.float64], position: NDArray[np.float64], crossings: pd.Series
+    time: NDArray[np.float64],
+    position: NDArray[np.float64],
+    crossings: pd.Series,
+    road: MeasureParameters,
 ) -> NDArray[np.float64]:
-    """Trajectories over `TIME`, shape `(changes, time)`; NaN outside the record."""
-    return np.array(
-        [
-            np.interp(TIME + float(at), time, position, left=np.nan, right=np.nan)
-            for at in crossings
-        ]
-    )
+    """Trajectories over `TIME`, shape `(changes, time)`; NaN outside the record.
+
+    They are measured from the centre of the left one of the two lanes that are changed.
+    """
+    # The centre of a line's left lane is half a lane beside it.
+    left = np.array([0.5 * road.lane_width - line for line in lines(road)])
+    found = []
+    for at in crossings:
+        there = float(np.interp(at, time, position)) + 0.5 * road.lane_width
+        origin = left[int(np.argmin(np.abs(left - there)))]
+        path = np.interp(TIME + float(at), time, position, left=np.nan, right=np.nan)
+        found.append(path - origin)
+    return np.array(found)
 
 
 def _mean(own: Own) -> Mean:
@@ -203,11 +216,16 @@ def _draw_panel(
     axes: Axes, means: dict[Key, Mean], duration: str, direction: int
 ) -> None:
     _draw_means(axes, means, duration, direction)
-    axes.axhline(LANE_LINE, color=FAINT, linewidth=0.7, linestyle=(0, (6.0, 4.0)))
-    axes.set_ylim(-4.3, 0.8)
-    axes.set_yticks(LANE_TICKS)
     planned = f"{duration} ({DURATIONS[duration]:g} s), " if duration else ""
     axes.set_title(f"{planned}to the {_WORDS[direction]}")
+
+
+def _draw_lanes(axes: Axes, width: float) -> None:
+    """The line between the two lanes, and marks at their centres."""
+    line = -width / 2.0
+    axes.axhline(line, color=FAINT, linewidth=0.7, linestyle=(0, (6.0, 4.0)))
+    axes.set_ylim(-width - 0.8, 0.8)
+    axes.set_yticks((-width, line, 0.0))
 
 
 def _draw_difference(
@@ -260,7 +278,9 @@ def _legend(means: dict[Key, Mean]) -> list[Line2D]:
     ]
 
 
-def _caption(own: dict[Key, Own], means: dict[Key, Mean]) -> str:
+def _caption(
+    own: dict[Key, Own], means: dict[Key, Mean], road: MeasureParameters
+) -> str:
     changes = sum(mean.changes for mean in means.values())
     participants = len({who for each in own.values() for who in each.positions})
     band = (
@@ -281,6 +301,7 @@ def _caption(own: dict[Key, Own], means: dict[Key, Mean]) -> str:
         f"{changes} lane changes of {participants} participants, aligned at the "
         f"crossing of the lane line (dashed): ({letters[0]}) to the right, "
         f"({letters[1]}) to the left. Lines are means over participants of each one's "
-        f"own mean; {band}. Lateral position is measured from the left lane's centre; "
-        f"the right lane's is at −3.5 m.{differing}"
+        f"own mean; {band}. Lateral position is measured from the centre of the left "
+        f"one of the two lanes; the right one's is at −{road.lane_width:g} m."
+        f"{differing}"
     )

@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 
 from costeer.pages.frame import Picture, Section
 from costeer.pages.tables import Table, versions_table
+from costeer.study.lanes import home_lane, keeps_home
 from costeer.study.material import StudyMaterial, is_virtual, why_without
 from costeer.study.quantities import BY_STRENGTH, WORKLOAD
 from costeer.study.reporting import (
@@ -18,6 +19,7 @@ from costeer.study.reporting import (
 from costeer.study.reporting.comparisons import shown_quantities
 from costeer.study.reporting.methods import methods_paragraphs
 from costeer.study.reporting.network import network_table
+from costeer.study.reporting.traffic_tables import contacts_table, zones_table
 from costeer.study.reporting.trigger_tables import trigger_costs_table
 
 
@@ -38,6 +40,7 @@ def page_sections(
         _effort(material, pictures),
         _intention(material, pictures),
         _inconsistencies(material, pictures),
+        _surroundings(material, pictures),
         _signals(pictures),
         _tests(material),
         _trials(material),
@@ -65,8 +68,10 @@ def _agreement(
 
 
 def _lane_keeping(material: StudyMaterial, pictures: Mapping[str, Picture]) -> Section:
+    where = "left" if home_lane(material.road) else "right"
+    kept = f"the {where} lane" if keeps_home(material.road) else "the lane driven in"
     text = (
-        "Measured in the left lane, away from lane changes and overtaking. SDLP is "
+        f"Measured in {kept}, away from lane changes and overtaking. SDLP is "
         "the standard deviation of the lane position; the reversal rate counts turns "
         "of the steering wheel larger than 3 deg.",
     )
@@ -148,6 +153,28 @@ _INCONSISTENT = (
     "sides and their pseudo-works differ by more than a threshold. The gain then "
     "fades out; below the re-plan gain the system plans anew; the gain fades in "
     "again.",
+)
+
+
+def _surroundings(
+    material: StudyMaterial, pictures: Mapping[str, Picture]
+) -> Section | None:
+    """What only some scenarios have; nothing on the paper's."""
+    if material.scenario is None:
+        return None
+    both = (
+        contacts_table(material),
+        zones_table(material),
+    )
+    items = _chosen(pictures, ("traffic",))
+    items += tuple(each for each in both if each is not None)
+    return Section("scenario", "Other cars, curves and zones", _NEARNESS, items)
+
+
+_NEARNESS = (
+    "A gap ends at the rear bumper of the car ahead, a headway at its front bumper "
+    "(SAE J2944). Time to collision is the gap over the closing speed, of the next car "
+    "ahead in the lane that is driven in. Each value stands in scenario_measures.csv.",
 )
 
 

@@ -106,7 +106,7 @@ def change_measures(
     at, peak = np.interp(span, time, position), inside[np.argmax(speed[inside])]
     if at[1] - at[0] < LEAST_DISPLACEMENT:
         return None
-    change = LaneChange(1, 1, span[0], float(time[peak]), span[1])
+    change = LaneChange(1, 1, span[0], float(time[peak]), span[1], lane=1)
     found = speed_measures({"time": time}, speed, change)
     shape, error = _shape(time, position, span)
     return ChangeMeasures(

@@ -1,0 +1,1 @@
+"""Emergencies: an obstacle appears; driver and guidance may want different things."""

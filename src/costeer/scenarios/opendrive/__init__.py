@@ -1,0 +1,1 @@
+"""Roads of OpenDRIVE files, and scenarios' roads as such files."""
