@@ -33,7 +33,8 @@ def arguments(function: Any) -> dict[str, Any]:  # Any: whatever is a default
 def test_everything_that_a_trial_setup_knows_can_be_given() -> None:
     given = arguments(costeer.simulate)
     assert set(given) == {*TrialSetup._fields, "engine"}
-    differ = {"condition", "parameters"}  # an assisted condition; a mapping
+    # An assisted condition, a mapping, and what the scenario says.
+    differ = {"condition", "parameters", "length", "speed"}
     for name, usual in TrialSetup._field_defaults.items():
         if name not in differ:
             np.testing.assert_equal(given[name], usual, err_msg=name)
@@ -43,7 +44,7 @@ def test_everything_that_a_study_is_set_to_can_be_given() -> None:
     given = arguments(study)
     assert set(given) == {*StudySettings._fields, "driver", "out", "jobs", "report"}
     for name, usual in StudySettings._field_defaults.items():
-        if name not in {"parameters", "weights"}:
+        if name not in {"parameters", "weights", "length", "speed"}:
             assert given[name] == usual, name
 
 

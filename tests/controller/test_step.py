@@ -184,25 +184,8 @@ def test_a_mirrored_drive_gives_mirrored_torques_and_the_same_gain() -> None:
     assert min(s.haptic_gain for s in every_left) < 0.05
 
 
-PLAN_OF_NAN = pytest.param(
-    "road_curvature",
-    marks=pytest.mark.xfail(
-        reason="is_known forgets the curvature: a whole path is planned of NaN",
-        strict=True,
-    ),
-)
-
-
 @pytest.mark.parametrize(
-    "name",
-    [
-        PLAN_OF_NAN,
-        *(
-            n
-            for n in Measurement._fields
-            if n not in ("head_yaw_valid", "road_curvature")
-        ),
-    ],
+    "name", [n for n in Measurement._fields if n != "head_yaw_valid"]
 )
 def test_one_lost_value_leaves_no_trace_after_100_ms(name: str) -> None:
     samples = weaving(120, driver_torque=0.1)

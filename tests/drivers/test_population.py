@@ -162,7 +162,7 @@ def test_no_spread_gives_the_median_driver() -> None:
 def test_reaction_times_are_log_normal_and_none_is_below_the_shortest() -> None:
     times = drawn(REACTION)
     logs, error = np.log(times), 4.0 * REACTION_SPREAD / math.sqrt(NUM_DRIVERS)
-    assert logs.mean() == pytest.approx(math.log(0.8), abs=error)
+    assert logs.mean() == pytest.approx(math.log(0.7), abs=error)
     assert logs.std(ddof=1) == pytest.approx(REACTION_SPREAD, abs=error / 2.0**0.5)
     assert times.min() >= FASTEST_REACTION == 0.3
 

@@ -28,7 +28,7 @@ from costeer.plant.fleet import (
 )
 from costeer.plant.fleet_motion import World, moved
 from costeer.plant.following import LONGEST_GAP, FollowingParameters
-from costeer.plant.outlook import Spot, neighbours, outlook
+from costeer.plant.outlook import NOBODY, Spot, neighbours, outlook
 from costeer.plant.parameters import RoadParameters
 
 DT = 1.0 / 20.0
@@ -107,17 +107,17 @@ def test_a_car_is_in_the_way_if_it_reaches_into_the_own_band(
 def test_a_car_on_its_way_to_a_lane_counts_there_already() -> None:
     parameters = fleet_parameters([there(0.0)])
     fleet = placed(Car(1.0, 40.0, -3.5, 20.0, lane=1.0))
-    around = neighbours(parameters, fleet, ROAD, 0.0, 0.0)
+    around = neighbours(parameters, fleet, ROAD, 0.0)
     assert around.left.ahead.gap == pytest.approx(35.5)  # its new lane
     assert around.own.ahead.gap == LONGEST_GAP  # in the ego car's way it is not yet
 
 
 def test_an_empty_road_shows_nobody() -> None:
     parameters = fleet_parameters(())
-    around = neighbours(parameters, placed(), ROAD, 1.0, -1.0)
+    around = neighbours(parameters, placed(), ROAD, 1.0)
     for lane in (around.own, around.left, around.right):
         assert lane.ahead.gap == lane.behind.gap == LONGEST_GAP
-    assert around.wanted_side == -1.0
+    assert around == NOBODY
 
 
 def test_forty_cars_drive_and_a_forty_first_is_refused() -> None:
@@ -206,7 +206,6 @@ def test_an_order_by_gap_comes_at_that_gap() -> None:
     assert ordered_at(WITHIN, 32.0) == pytest.approx(32.0, abs=EGO_SPEED * DT)
 
 
-@pytest.mark.xfail(reason="is_due takes the gap of the cars' middles", strict=True)
 def test_an_order_by_time_to_collision_comes_at_that_time() -> None:
     # Bumpers are 4.5 m nearer than middles; a closing of 8 m/s.
     gap = ordered_at(TIME_TO_COLLISION, 4.0)

@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 
 from costeer.devices.wheels.interface import EFFECT_LIFE
+from costeer.records.columns import Column
 from costeer.records.row import ROW_COLUMNS
-from costeer.runtime.frame import FRAME
+from costeer.runtime.frame import FRAME, FrameRow
 from costeer.runtime.setup import DriveSetup, leader_draws
 from costeer.runtime.states import Fault, RunState
 from tests.runtime.rig import Rig, drive_setup, of, wheel_setup
@@ -163,10 +164,12 @@ def test_frame_ends_with_what_the_method_adds_or_with_nothing_of_it(
     rig: MakeRig,
 ) -> None:
     drive = rig(drive_setup())
-    drive.driving._own = np.array([np.nan, 5.0])  # another method runs
+    own = [Column(f"method_{name}", "-", "float64", name) for name in "ab"]
+    drive.driving._frame = FrameRow(own)
     row = np.zeros(len(ROW_COLUMNS) + 2)
     row[-2:] = 1.5, 2.5
-    for given, added in ((row, [1.5, 2.5]), (row[:-2], [np.nan, 5.0])):
+    # Without the last two another method runs.
+    for given, added in ((row, [1.5, 2.5]), (row[:-2], [np.nan, np.nan])):
         drive.driving._tell(given, 0.0)
         frame = drive.shared.frames.since(drive.shared.frames.written - 1)[1][0]
         np.testing.assert_array_equal(frame[len(FRAME) : len(FRAME) + 2], added)

@@ -31,7 +31,8 @@ def interval(table: Numbers, width: int, count: Real, position: Real) -> int:
         return max(min(place, int(count)) - 1, 0)
     numpy: Any = np if isinstance(position, np.ndarray) else sys.modules["jax.numpy"]
     places = numpy.searchsorted(numpy.asarray(starts), position, side="right")
-    found: int = numpy.clip(numpy.minimum(places, count) - 1, 0).astype(int)
+    last = numpy.minimum(places, count) - 1
+    found: int = numpy.maximum(last, 0).astype(int)
     return found
 
 
@@ -52,7 +53,8 @@ def _interval(table: Any, width: Any, count: Any, position: Any) -> Any:
 
 def element(values: Numbers, index: int) -> Real:
     """One number of an array; a plain float where the array is one of NumPy."""
-    if isinstance(values, np.ndarray) and not isinstance(index, int | np.integer):
+    ours = isinstance(index, int | np.integer | np.ndarray)
+    if isinstance(values, np.ndarray) and not ours:
         values = sys.modules["jax.numpy"].asarray(values)  # the place is traced
     found = values[index]
     return float(found) if isinstance(found, np.floating) else cast("Real", found)

@@ -37,7 +37,7 @@ class CommandGroup(LazyGroup):
         "parameters": "List every parameter that --set can change: value, unit, range, "
         "source.",
         "train": "Fit the intention network on records.",
-        "emergencies": "Let obstacles appear, with and without guidance.",
+        "emergencies": "Let an obstacle appear ahead, and compare what comes of it.",
         "evaluate": "Judge the intention network on records or a table.",
         "analyse": "Compute driving measures from records or a table.",
         "report": "Write tables, tests, figures and report.html of a study again.",

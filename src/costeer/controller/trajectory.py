@@ -91,7 +91,8 @@ def plan_path(
 def is_known(measurement: Measurement) -> Flag:
     """Whether all that a plan is made of is finite: a lost sample changes no plan."""
     place = measurement.longitudinal_position + measurement.lateral_position
-    motion = measurement.longitudinal_velocity + measurement.yaw_rate
+    bend = measurement.road_curvature + measurement.road_curvature_slope
+    motion = measurement.longitudinal_velocity + measurement.yaw_rate + bend
     return xp.isfinite(
         place + motion + measurement.yaw_angle + measurement.lane + measurement.side
     )

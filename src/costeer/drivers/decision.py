@@ -153,7 +153,8 @@ def next_phase(
     overtake = overtake & is_worth_overtaking(parameters, around)
     overtake = (overtake | (around.asked > 0.5)) & way_out
     back = wants_to_return(parameters, around.measurement, around.leader)
-    back = (back & is_worth_returning(parameters, around)) | (around.asked < -0.5)
+    back = back & is_worth_returning(parameters, around) & (around.asked < 0.5)
+    back = back | (around.asked < -0.5)
     rested = time >= state.pause
     phase = state.phase
     done = (

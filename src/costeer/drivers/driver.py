@@ -38,8 +38,8 @@ from costeer.plant.traffic import LeaderState
 from costeer.sensing.measurement import Measurement
 
 SLOWEST_SEEN = 5.0
-"""A driver who is slower steers as at this speed [m/s]: nobody winds the wheel of a car
-that hardly moves. Source: assumed."""
+"""A driver who is slower sees as at this speed, and steers by less the slower [m/s]:
+nobody winds the wheel of a car that hardly moves. Source: assumed."""
 
 
 class DriverParameters(NamedTuple):
@@ -216,7 +216,8 @@ def see(
         dt,
     )
     planned = vision.planned_angle(eyes, knowledge.car, speed, wanted.far_curvature)
-    return new_state, asked + planned
+    moves = xp.minimum(measurement.longitudinal_velocity / SLOWEST_SEEN, 1.0)
+    return new_state, (asked + planned) * xp.maximum(moves, 0.0)
 
 
 @compiled

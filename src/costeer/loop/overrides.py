@@ -24,6 +24,10 @@ OPTIONS = {
     "follows_plan": "follows_plan of TrialSetup in Python",
     "plant_steps": "plant_steps of TrialSetup in Python",
     "assists": "--method (in Python method)",
+    "alignment.num_stations": "--scenario (in Python scenario)",
+    "fleet.num_places": "--scenario (in Python scenario)",
+    "fleet.range": "--scenario (in Python scenario)",
+    "stretches.num_stretches": "--scenario (in Python scenario)",
     "actuation.strength_factor": "--condition (in Python condition)",
     "trajectory.change_duration": "--condition (in Python condition)",
 }

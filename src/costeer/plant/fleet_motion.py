@@ -61,7 +61,9 @@ class World(NamedTuple):
 
 
 @compiled
-def is_due(trigger: Real, value: Real, car: Car, ego: Car, time: Real) -> Flag:
+def is_due(
+    trigger: Real, value: Real, car: Car, ego: Car, half: Real, time: Real
+) -> Flag:
     """Whether a trigger holds.
 
     Args:
@@ -69,12 +71,13 @@ def is_due(trigger: Real, value: Real, car: Car, ego: Car, time: Real) -> Flag:
         value: Time [s], place [m], gap [m] or time to collision [s].
         car: In question.
         ego: The driven car.
+        half: Mean length of the two cars [m].
         time: Since the trial began [s].
     """
     gap = car.position - ego.position
     closing = xp.maximum(ego.velocity - car.velocity, 1e-3)
     near = (gap > 0.0) & (gap <= value)
-    soon = (gap > 0.0) & (gap <= value * closing)
+    soon = (gap > 0.0) & (gap - half <= value * closing)
     return (
         (trigger == FROM_START)
         | ((trigger == AT_TIME) & (time >= value))
@@ -95,9 +98,9 @@ def appeared(kind: CarKind, car: Car, ego: Car, own_length: Real, time: Real) ->
         own_length: Of the driven car [m].
         time: Since the trial began [s].
     """
-    due = is_due(kind.trigger, kind.value, car, ego, time)
-    comes = due & (car.present < 0.5)
     half = (kind.length + own_length) / 2.0
+    due = is_due(kind.trigger, kind.value, car, ego, half, time)
+    comes = due & (car.present < 0.5)
     ahead = ego.position + ego.velocity * kind.headway + half
     place = xp.select(kind.headway >= 0.0, ahead, car.position)
     return car._replace(
@@ -118,7 +121,7 @@ def changing_to(car: Car, lane: Real, starts: Flag) -> Car:
 
 @compiled
 def obeying(
-    order: Order, told: Real, car: Car, ego: Car, time: Real
+    order: Order, told: Real, car: Car, ego: Car, half: Real, time: Real
 ) -> tuple[Car, Real]:
     """The car with an order, and whether it has been given.
 
@@ -127,9 +130,11 @@ def obeying(
         told: 1 if it has been given before [-].
         car: In question.
         ego: The driven car.
+        half: Mean length of the two cars [m].
         time: Since the trial began [s].
     """
-    due = is_due(order.trigger, order.value, car, ego, time) & (car.present > 0.5)
+    due = is_due(order.trigger, order.value, car, ego, half, time)
+    due = due & (car.present > 0.5)
     new = due & (told < 0.5)
     speeds = new & xp.isfinite(order.velocity)
     sped = car._replace(
@@ -283,9 +288,10 @@ def moved_car(
     ego: Car = _read_car(fleet.cars, 0)
     own_length = _read_kind(parameters.kinds, 0).length
     car = appeared(kind, before, ego, own_length, world.time)
-    car, first = obeying(kind.first, car.first, car, ego, world.time)
-    car, second = obeying(kind.second, car.second, car, ego, world.time)
-    car, third = obeying(kind.third, car.third, car, ego, world.time)
+    half, time = (kind.length + own_length) / 2.0, world.time
+    car, first = obeying(kind.first, car.first, car, ego, half, time)
+    car, second = obeying(kind.second, car.second, car, ego, half, time)
+    car, third = obeying(kind.third, car.third, car, ego, half, time)
     car = by_mobil(parameters, fleet, world, car, index)
     car = car._replace(
         acceleration=accelerated(parameters, fleet, world, car, index),

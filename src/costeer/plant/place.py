@@ -63,7 +63,7 @@ def ground_contact(road: RoadParameters, beyond: Real) -> Real:
         beyond: The outer line, of the car's side [m].
     """
     inner = beyond - STRIP_BEGINS
-    on_strip = (inner > 0.0) & (inner < STRIP_WIDTH)
+    on_strip = (inner > 0.0) & (inner < STRIP_WIDTH) & (road.rumble > 0.0)
     ground = xp.select(on_strip, STRIP, NO_CONTACT)
     return xp.select(beyond >= road.shoulder, BARRIER, ground)
 

@@ -37,6 +37,7 @@ UNITS = {
     "gaze.amplitude": "-",
     "longitudinal.preferred_speed": "m/s",
     "longitudinal.overtaking_speed": "m/s",
+    "evasion.reaction_time": "s",
 }
 """Parameters that differ between drivers, and their units."""
 
