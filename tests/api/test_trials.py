@@ -170,7 +170,7 @@ def test_a_study_takes_cars_drivers_and_predictors_as_objects(tmp_path: Path) ->
     ("given", "told"),
     [
         ({"speed": "70km/h"}, r"speed is '70km/h'; give a number \[m/s\]"),
-        ({"length": None}, r"length is None; give a number \[m\]"),
+        ({"length": "8 km"}, r"length is '8 km'; give a number \[m\]"),
         ({"car": 5}, "car is 5; give a name, a file NAME.yaml, or CarParameters"),
         ({"drivers": 5}, "driver is 5; give a name, a file NAME.yaml, or Driver"),
         ({"drivers": [CARS["large"]]}, "driver is CarParameters"),

@@ -107,6 +107,9 @@ def chosen(given: str | Scenario, length: float | None, speed: float | None) -> 
         ValueError: If there is none, or a curve is too tight for the speed.
         OSError: If the file cannot be read.
     """
+    for name, value, unit in (("length", length, "m"), ("speed", speed, "m/s")):
+        if not isinstance(value, int | float | None) or isinstance(value, bool):
+            raise ValueError(f"{name} is {value!r}; give a number [{unit}]")
     scenario = scenario_named(given, speed)
     own = scenario.road.length
     driven = own if length is None else length
