@@ -37,9 +37,9 @@ UNITS = {
     "gaze.amplitude": "-",
     "longitudinal.preferred_speed": "m/s",
     "longitudinal.overtaking_speed": "m/s",
-    "evasion.reaction_time": "s",
 }
-"""Parameters that differ between drivers, and their units."""
+"""Parameters that differ between drivers, and their units; but for the reaction time in
+an emergency, which manual driving on a free road says nothing of."""
 
 LOG_NORMAL, NORMAL = "log-normal", "normal"
 
