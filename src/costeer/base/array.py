@@ -168,8 +168,9 @@ def select(condition: Flag, if_true: Value, if_false: Value) -> Value:
         return if_true if condition else if_false
     if isinstance(if_true, tuple):
         fields = zip(if_true, cast("Any", if_false), strict=True)
-        chosen = (select(condition, one, other) for one, other in fields)
-        return cast("Value", cast("Any", type(if_true))(*chosen))
+        chosen = tuple(select(condition, one, other) for one, other in fields)
+        kind = cast("Any", type(if_true))
+        return cast("Value", kind(*chosen) if hasattr(kind, "_fields") else chosen)
     return cast("Value", _numpy_like(condition).where(condition, if_true, if_false))
 
 
