@@ -192,7 +192,7 @@ def test_a_gradient_through_the_loop_equals_a_finite_difference() -> None:
         guidance = parameters.controller.guidance._replace(lateral_error_gain=gain)
         controller = parameters.controller._replace(guidance=guidance)
         changed = parameters._replace(controller=controller)
-        fixed = Fixed(rules_of(IBHS), writer_of(IBHS).values, 8, INTENTION_SCRIPTED)
+        fixed = Fixed(rules_of(IBHS), writer_of(IBHS).values, 8, INTENTION_SCRIPTED, 0)
         _, filled = trace(changed, 3.0, np.array([]), drawn, fixed)
         return filled[-1, ROW_COLUMNS.index("lateral_position")]
 

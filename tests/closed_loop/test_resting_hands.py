@@ -49,6 +49,8 @@ def parameters(car: str, speed: float, arms: ArmParameters) -> LoopParameters[An
         events=False,
     )
     usual = loop_parameters(setup)
+    # No barrier near the road: asked is when the gain comes back, wherever the car is.
+    usual = usual._replace(road=usual.road._replace(shoulder=50.0))
     if arms == NONE:
         return usual
     return usual._replace(driver=usual.driver._replace(arm=arms))
