@@ -101,8 +101,10 @@ def appeared(kind: CarKind, car: Car, ego: Car, own_length: Real, time: Real) ->
     half = (kind.length + own_length) / 2.0
     due = is_due(kind.trigger, kind.value, car, ego, half, time)
     comes = due & (car.present < 0.5)
-    ahead = ego.position + ego.velocity * kind.headway + half
-    place = xp.select(kind.headway >= 0.0, ahead, car.position)
+    # No NaN in what is not taken: it would spoil gradients.
+    is_ahead = kind.headway >= 0.0
+    ahead = ego.position + ego.velocity * xp.select(is_ahead, kind.headway, 0.0) + half
+    place = xp.select(is_ahead, ahead, car.position)
     return car._replace(
         present=xp.select(due, 1.0, car.present),
         position=xp.select(comes, place, car.position),

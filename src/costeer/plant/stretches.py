@@ -94,7 +94,9 @@ def side_force(stretch: Stretch, lasts: Flag, position: Real) -> Real:
         lasts: Whether the car is on it.
         position: Of the car along the road [m].
     """
-    share = (position - stretch.start) / (stretch.end - stretch.start)
-    there = xp.clip(xp.select(lasts, share, 0.0), 0.0, 1.0)
+    # No NaN in what is not taken: it would spoil gradients.
+    reached = xp.select(lasts, position - stretch.start, 0.0)
+    length = xp.select(lasts, stretch.end - stretch.start, 1.0)
+    there = xp.clip(reached / length, 0.0, 1.0)
     rise = 4.0 * there * (1.0 - there)
     return stretch.side_force * rise * rise
