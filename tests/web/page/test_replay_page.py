@@ -156,7 +156,8 @@ MIRROR = """
     axes.updateMatrixWorld(true);
     const {camera, mesh} = mirrors.all[0];
     const u = axes.localToWorld(new Vector3(-50, 3, 1)).project(camera).x / 2 + 0.5;
-    const {position, uv} = mesh.children[1].geometry.attributes;
+    const glass = mesh.children[mesh.children.length - 1];
+    const {position, uv} = glass.geometry.attributes;
     // Place on the glass, from its middle to the driver's right, that shows this u.
     const slope = (position.getX(1) - position.getX(0)) / (uv.getX(1) - uv.getX(0));
     const x = position.getX(0) + (u - uv.getX(0)) * slope;
