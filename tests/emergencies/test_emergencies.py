@@ -107,6 +107,29 @@ def test_situation_is_read_when_the_obstacle_appears(
     assert outcome(record).situation == situation
 
 
+def test_a_method_without_a_verdict_is_not_called_inconsistent() -> None:
+    none = np.ma.masked_all(len(made_up().columns["time"]), bool)
+    assert outcome(made_up(consistent=none)).situation == 1
+
+
+@pytest.mark.parametrize(
+    ("lateral", "left"), [(0.84, False), (0.86, True), (-4.34, False), (-4.36, True)]
+)
+def test_who_has_a_side_over_an_outer_line_has_left_the_road(
+    lateral: float, left: bool
+) -> None:
+    # Lines at 1.75 and -5.25 m, half a car is 0.9 m wide.
+    time = made_up().columns["time"]
+    y = np.where(time < 6.0, -2.0, lateral)
+    assert outcome(made_up(lateral_position=y)).left_road is left
+
+
+def test_a_study_that_cannot_be_has_no_folder(tmp_path: Path) -> None:
+    with pytest.raises(ValueError, match="ibhs"):
+        prepare(tmp_path / "a", Settings(method="ibsh"))
+    assert not (tmp_path / "a").exists()
+
+
 def test_every_planned_drive_can_be_and_is_found_again_from_its_row() -> None:
     settings = Settings(drivers=1)
     drives = planned(settings)
@@ -155,7 +178,7 @@ def test_worst_have_the_most_time_and_stand_once_for_condition_and_situation() -
 @pytest.mark.slow
 def test_report_holds_tables_figures_and_records_that_replay(tmp_path: Path) -> None:
     settings = Settings(drivers=1, conditions=("manual", "strong-normal"))
-    prepare(tmp_path)
+    prepare(tmp_path, settings)
     rows = drive_all(settings, 2, lambda _: None)
     assert [drive_of(row) for row in rows] == planned(settings)
     page = write_report(tmp_path, settings, rows).read_text("utf-8")

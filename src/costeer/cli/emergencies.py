@@ -44,7 +44,7 @@ def emergencies(
 
     named = tuple(name.strip() for name in conditions.split(",") if name.strip())
     settings = Settings(drivers, seed, check_conditions(named), method)
-    prepare(out)
+    prepare(out, settings)
     try:
         with progress("emergencies", num_drives(settings)) as advance:
             rows = drive_all(settings, jobs or default_jobs(), advance)

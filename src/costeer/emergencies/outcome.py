@@ -10,7 +10,9 @@ from numpy.typing import NDArray
 
 from costeer.emergencies.design import Emergency
 from costeer.methods.conditions import MANUAL
-from costeer.plant.place import BARRIER, CAR
+from costeer.plant.parameters import RoadParameters
+from costeer.plant.place import BARRIER, CAR, beyond_line
+from costeer.plant.road import lane_centre
 from costeer.records.columns import LANE_CHANGING, TrialRecord
 from costeer.scenarios.definition import KINDS
 
@@ -28,6 +30,9 @@ SETTLED_OFFSET, SETTLED_TIME = 0.3, 2.0
 
 _CAR_LENGTH, _CAR_WIDTH = KINDS["car"]
 
+ROAD = RoadParameters()
+"""Lanes of the road on which emergencies are driven."""
+
 Values = NDArray[Any]
 
 
@@ -37,7 +42,8 @@ class EmergencyRow(NamedTuple):
     Attributes:
         condition: Of the guidance.
         meant_situation: That the drive was meant to come to [-].
-        situation: That it came to; 0 without assistance [-].
+        situation: That it came to; 0 without assistance. A method that gives no
+            verdict is taken for consistent [-].
         suggested_speed: To the driver [m/s].
         speed: Of the car when the obstacle appeared [m/s].
         time_to_collision: Then [s].
@@ -90,7 +96,7 @@ def outcome_of(
         record: Of the drive; its first other car is the obstacle.
         undisturbed: The same drive without an obstacle.
     """
-    columns = {name: np.ma.filled(each, 0) for name, each in record.columns.items()}
+    columns = _filled(record)
     there = np.flatnonzero(np.isfinite(columns["car_01_position"]))
     if not there.size:
         return None
@@ -122,6 +128,14 @@ def outcome_of(
         left_road=_outside(after),
         time_to_settle=_time_to_settle(after, passed),
     )
+
+
+def _filled(record: TrialRecord) -> dict[str, Values]:
+    """Columns without masks; who has no verdict is taken for consistent."""
+    return {
+        name: np.ma.filled(each, name == "consistent")
+        for name, each in record.columns.items()
+    }
 
 
 def _place(columns: dict[str, Values]) -> Values:
@@ -163,7 +177,7 @@ def _reaction_time(
     columns: dict[str, Values], undisturbed: TrialRecord, first: int
 ) -> float:
     """From the appearance until wheel or brake differ from those without it [s]."""
-    other = {name: np.ma.filled(each, 0) for name, each in undisturbed.columns.items()}
+    other = _filled(undisturbed)
     last = min(len(columns["time"]), len(other["time"]))
 
     def apart(name: str) -> Values:
@@ -178,15 +192,16 @@ def _reaction_time(
 
 def _outside(after: dict[str, Values]) -> bool:
     """Whether a side of the car was beyond an outer line."""
-    y = after["lateral_position"]
-    half = _CAR_WIDTH / 2.0
-    return bool(((y + half > 1.75) | (y - half < -5.25)).any())
+    y: Any = after["lateral_position"]  # an array where the annotation shows a number
+    return bool(np.any(beyond_line(ROAD, y, _CAR_WIDTH) > 0.0))
 
 
 def _time_to_settle(after: dict[str, Values], passed: int) -> float:
     """From the appearance until the car stays in the middle of a lane [s]."""
     y, time = after["lateral_position"], after["time"]
-    off = np.minimum(np.abs(y), np.abs(y + 3.5)) > SETTLED_OFFSET
+    centres = [lane_centre(ROAD, lane) for lane in range(int(ROAD.num_lanes))]
+    nearest = np.min([np.abs(y - centre) for centre in centres], axis=0)
+    off = nearest > SETTLED_OFFSET
     late = np.flatnonzero(off[passed:])
     start = passed + (int(late[-1]) + 1 if late.size else 0)
     if start >= len(time) or time[-1] - time[start] < SETTLED_TIME:

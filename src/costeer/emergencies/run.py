@@ -14,6 +14,7 @@ from costeer.emergencies.design import (
     undisturbed,
 )
 from costeer.emergencies.outcome import EmergencyRow, drive_of, outcome_of
+from costeer.loop.scenario import loop_parameters
 from costeer.loop.trial import simulate_trial
 from costeer.records.columns import TrialRecord
 from costeer.records.record import write_record
@@ -108,11 +109,14 @@ def write_outcome(
         write_record(home / worst_name(row), record)
 
 
-def prepare(folder: Path) -> None:
-    """Make the folder before minutes of work.
+def prepare(folder: Path, settings: Settings) -> None:
+    """Make the folder before minutes of work, if the drives can be.
 
     Raises:
-        ValueError: If it holds something else.
+        ValueError: If a drive cannot be, or the folder holds something else.
         OSError: If it cannot be made.
     """
+    for condition in settings.conditions:
+        first = next(d for d in planned(settings) if d.condition == condition)
+        loop_parameters(setup_of(settings, first))
     prepare_folder(folder, ROWS_FILE, "report on emergencies")
