@@ -86,7 +86,8 @@ def test_page_drives_for_a_minute_and_changes_lanes(tmp_path: Path) -> None:
 def check_road(image: np.ndarray[Any, np.dtype[np.float64]]) -> None:
     """Sky above, grey road ahead, grass beside it."""
     rows, columns, _ = image.shape
-    sky = image[int(0.12 * rows), int(0.3 * columns)]
+    above = image[int(0.08 * rows) : int(0.16 * rows), int(0.28 * columns) :]
+    sky = np.median(above, axis=(0, 1))  # whatever tree the car passes
     assert sky[2] > 0.5
     assert sky[2] >= sky[0]
     ahead = image[

@@ -9,6 +9,7 @@ import sys
 import urllib.error
 import urllib.request
 from contextlib import suppress
+from http.client import HTTPException
 from pathlib import Path
 from typing import Any
 
@@ -94,6 +95,8 @@ class RehearsalServer:
         except urllib.error.HTTPError as error:
             error.close()
             raise
+        except (HTTPException, json.JSONDecodeError) as error:  # killed in mid-answer
+            raise ConnectionError(f"{path} was cut off") from error
         return found
 
     def console(self, action: str = "", **given: Any) -> dict[str, Any]:

@@ -109,8 +109,7 @@ class Robot:
         self.given: dict[tuple[str, str], dict[str, Any]] = {}
         self.finished: dict[tuple[str, str, int], str] = {}
         self.accidents = dict.fromkeys(ACCIDENTS, 0)
-        self._who = ""
-        self._answered: dict[str, Any] = {}
+        self._who, self._is_seated = "", False
 
     def close(self) -> None:
         """End server and browser."""
@@ -127,8 +126,7 @@ class Robot:
         Raises:
             ValueError: If nothing moves any more.
         """
-        self._who = who
-        self._sit_down()
+        self._who, self._is_seated = who, False
         moved, last = time.monotonic(), ""
         next_accident = self._until_accident()
         while (on := self._went_on()) != "done":
@@ -145,20 +143,18 @@ class Robot:
     def _went_on(self) -> str:
         """Do what comes next, whatever was killed; return where the session stands."""
         try:
+            if not (self._is_seated and self.server.is_alive):
+                self._sit_down()
             state = self.server.ask("/api/session")
             step = state["step"] or {}
             if step.get("kind") == "done":
                 return "done"
             self._do(state, step)
-        except (OSError, ValueError) as error:
-            if not self.server.is_alive:
-                self._sit_down()
-            elif isinstance(error, ValueError):
-                raise
+        except OSError:
             return ""
-        except self._errors as error:  # the browser was killed under the hand
+        except self._errors as error:  # browser or server was killed under the hand
             self._told(f"{self._who}: browser: {str(error).splitlines()[0]}")
-            self._open_page()
+            self._is_seated = False
             return ""
         return f"{step.get('id')} {step.get('drive', {}).get('state')}"
 
@@ -180,6 +176,7 @@ class Robot:
             self.server.start()
         self.server.console("begin", participant=self._who)
         self._open_page()
+        self._is_seated = True
 
     def _open_page(self) -> None:
         """A page of the participant, in a new browser if the old one is gone."""
@@ -192,7 +189,7 @@ class Robot:
             with suppress(self._errors):
                 self._page.close()
         self._page = self._browser.new_page(viewport={"width": 480, "height": 320})
-        self._page.goto(self.server.address + "/?lowgfx=1")
+        self._page.goto(self.server.address + "/?low")
 
     # One step
 
