@@ -5,6 +5,8 @@ from __future__ import annotations
 import errno
 import multiprocessing
 import os
+import subprocess
+import sys
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -121,3 +123,33 @@ def test_shared_memory_without_room_is_told_and_given_back(
     with pytest.raises(ValueError, match=r"shared memory lacks room for the .* MB"):
         make_shared()
     assert not names[0].exists()
+
+
+AFTER_ITS_END = """
+import os
+from costeer.runtime.shared import close_shared, make_shared, next_rows, open_shared
+shared = make_shared()
+other = open_shared(shared.memory.name)
+before = len(os.listdir("/proc/self/fd")) if os.path.isdir("/proc") else 0
+for each in (other, shared):
+    close_shared(each, unlink=each is shared)
+    each.mailbox.put(steer=0.5)
+    assert next_rows(each).frames == 0
+    close_shared(each, unlink=False)
+    assert each.mailbox.get("steer") == 0.5
+after = len(os.listdir("/proc/self/fd")) if os.path.isdir("/proc") else -2
+assert after == before - 2, (before, after)
+maps = "/proc/self/maps"
+name = shared.memory.name
+del shared, other, each
+if os.path.exists(maps):
+    assert name not in open(maps).read(), "it stays for ever"
+"""
+
+
+def test_a_key_pressed_while_the_drive_ends_kills_nobody() -> None:
+    """In a process of its own: it would take this one with it."""
+    done = subprocess.run(
+        [sys.executable, "-c", AFTER_ITS_END], capture_output=True, text=True
+    )
+    assert (done.returncode, done.stderr) == (0, "")

@@ -136,6 +136,23 @@ class Rows(NamedTuple):
     trace: int = 0
 
 
+class LastingMemory(SharedMemory):
+    """Shared memory that stays as long as someone looks at it.
+
+    A page may press a key while its drive ends: memory that is taken from under a view
+    kills the whole process.
+    """
+
+    def close(self) -> None:
+        """Let go of it; views keep it until the last of them is gone."""
+        try:
+            super().close()
+        except BufferError:
+            # The views hold what is dropped here; the rest is closed.
+            self._buf = self._mmap = None
+            super().close()
+
+
 class Shared(NamedTuple):
     """Everything that is shared, as one process sees it.
 
@@ -177,7 +194,7 @@ def make_shared() -> Shared:
     """
     _start_tracker()
     try:
-        memory = SharedMemory(create=True, size=8 * _TOTAL)
+        memory = LastingMemory(create=True, size=8 * _TOTAL)
     except OSError as error:
         raise ValueError(_no_room()) from error
     try:
@@ -187,7 +204,7 @@ def make_shared() -> Shared:
         memory.unlink()
         raise ValueError(_no_room()) from error
     shared = _view(memory)
-    np.ndarray(_TOTAL, np.float64, memory.buf)[:] = 0.0
+    _numbers(memory)[:] = 0.0
     shared.mailbox.put(head_yaw=0.0, crossing_probability=np.nan, verdict_row=-1.0)
     return shared
 
@@ -237,7 +254,7 @@ def open_shared(name: str) -> Shared:
     return _view(attached(name))
 
 
-def attached(name: str) -> SharedMemory:
+def attached(name: str) -> LastingMemory:
     """Shared memory that this process does not own and will not unlink.
 
     Before Python 3.13 the resource tracker of a spawned process would unlink it when
@@ -248,7 +265,7 @@ def attached(name: str) -> SharedMemory:
     original = resource_tracker.register
     resource_tracker.register = _nothing  # type: ignore[assignment]  # for this call
     try:
-        return SharedMemory(name=name)
+        return LastingMemory(name=name)
     finally:
         resource_tracker.register = original
 
@@ -257,8 +274,14 @@ def _nothing(name: str, rtype: str) -> None:
     """Register nothing."""
 
 
+def _numbers(memory: SharedMemory) -> NDArray[np.float64]:
+    """All of it; an array by `np.ndarray` would not hold the memory it looks at."""
+    assert memory.buf is not None  # only after its end
+    return np.frombuffer(memory.buf, np.float64, _TOTAL)
+
+
 def _view(memory: SharedMemory) -> Shared:
-    numbers: NDArray[np.float64] = np.ndarray(_TOTAL, np.float64, memory.buf)
+    numbers = _numbers(memory)
     mailbox, rest = numbers[: len(MAILBOX)], numbers[len(MAILBOX) :]
     return Shared(
         memory=memory,
@@ -270,9 +293,7 @@ def _view(memory: SharedMemory) -> Shared:
 
 def close_shared(shared: Shared, unlink: bool) -> None:
     """Let go of the memory; `unlink` by the process that made it."""
-    # Views of it may be alive in this process: the system frees it at its end.
-    with suppress(BufferError):
-        shared.memory.close()
+    shared.memory.close()
     if unlink:
         with suppress(FileNotFoundError):
             shared.memory.unlink()
