@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import os
+import re
 import signal
 import socket
 import subprocess
@@ -169,7 +170,9 @@ def test_stop_while_it_starts_is_told_in_one_line(after: float) -> None:
         time.sleep(after)
         os.killpg(process.pid, signal.SIGINT)  # as a terminal does
         _, told = process.communicate(timeout=PATIENCE)
-    lines = [line for line in told.splitlines() if "real-time process" not in line]
+    # A busy machine says that it was late.
+    told_anyway = re.compile("real-time process|control steps held")
+    lines = [line for line in told.splitlines() if not told_anyway.search(line)]
     assert lines in (["costeer: stopped"], [])  # none if it had started by then
 
 
