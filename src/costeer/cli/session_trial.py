@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import NamedTuple
 
+import numpy as np
 import typer
 
 from costeer.cli.console import note, print_table
@@ -104,9 +105,18 @@ def rehearse_study(folder: Path, said: Rehearsal) -> None:
             ["finished drives, of them lost", f"{found.trials}, {found.lost_trials}"],
             ["killed on the way", killed],
             ["orders balanced", "yes" if found.even else "no"],
+            ["the console waits while someone drives", _waits_told(found.waits)],
             ["time", f"{found.seconds / 60.0:.1f} min"],
         ],
     )
     lost = found.lost_answers + found.lost_trials
     if lost or found.participants < said.participants:
         raise typer.Exit(1)
+
+
+def _waits_told(waits: tuple[float, ...]) -> str:
+    """Median and 95th percentile of waiting times [s], in words."""
+    if not waits:
+        return "nobody drove"
+    middle, late = 1e3 * np.quantile(waits, [0.5, 0.95])
+    return f"{middle:.0f} ms at the median, {late:.0f} ms at the 95th percentile"

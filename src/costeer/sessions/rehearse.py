@@ -38,6 +38,7 @@ class Outcome(NamedTuple):
         lost_trials: Of these, not found as they were.
         accidents: How often each thing was killed.
         even: Whether the orders are balanced.
+        waits: Of the console for an answer while someone drove [s], smallest first.
         seconds: It took [s].
     """
 
@@ -48,6 +49,7 @@ class Outcome(NamedTuple):
     lost_trials: int
     accidents: dict[str, int]
     even: bool
+    waits: tuple[float, ...]
     seconds: float
 
 
@@ -131,6 +133,7 @@ def _judged(folder: Path, robot: Robot, seconds: float) -> Outcome:
         lost_trials=lost_trials,
         accidents=robot.accidents,
         even=balance(session.plan, slots).is_even,
+        waits=tuple(sorted(robot.waits)),
         seconds=seconds,
     )
     session.close()

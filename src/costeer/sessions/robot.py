@@ -109,6 +109,7 @@ class Robot:
         self.given: dict[tuple[str, str], dict[str, Any]] = {}
         self.finished: dict[tuple[str, str, int], str] = {}
         self.accidents = dict.fromkeys(ACCIDENTS, 0)
+        self.waits: list[float] = []
         self._who, self._is_seated = "", False
 
     def close(self) -> None:
@@ -204,6 +205,8 @@ class Robot:
             self._press_on(step)
         elif kind in ("practise", "drive"):
             self._drive(step)
+            if step["drive"]["state"] == "running":
+                self._time_console()
         time.sleep(0.1)
 
     def _answer(self, step: dict[str, Any]) -> None:
@@ -268,6 +271,12 @@ class Robot:
             inside = self._page.frame_locator("iframe:not([inert])").locator("body")
             inside.press("Enter", timeout=5000)
             time.sleep(0.4)
+
+    def _time_console(self) -> None:
+        """Measure how long the console waits for an answer while someone drives [s]."""
+        asked = time.monotonic()
+        self.server.console()
+        self.waits.append(time.monotonic() - asked)
 
     # Accidents
 

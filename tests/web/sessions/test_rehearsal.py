@@ -59,5 +59,7 @@ def test_whatever_is_killed_no_answer_and_no_finished_drive_is_lost(
     assert (found.lost_answers, found.lost_trials) == (0, 0), said
     assert found.trials == 4  # practice and trial, manual and with guidance
     assert found.answers > 50
+    assert found.waits, "the console was never asked while someone drove"
+    assert 0.0 < found.waits[0] <= found.waits[-1]
     killed = [line for line in said if re.search("is killed", line)]
     assert len(killed) == sum(found.accidents.values())
