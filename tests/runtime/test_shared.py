@@ -135,10 +135,11 @@ for each in (other, shared):
     close_shared(each, unlink=each is shared)
     each.mailbox.put(steer=0.5)
     assert next_rows(each).frames == 0
-    close_shared(each, unlink=False)
-    assert each.mailbox.get("steer") == 0.5
 after = len(os.listdir("/proc/self/fd")) if os.path.isdir("/proc") else -2
 assert after == before - 2, (before, after)
+for each in (other, shared):
+    close_shared(each, unlink=False)
+    assert each.mailbox.get("steer") == 0.5
 maps = "/proc/self/maps"
 name = shared.memory.name
 del shared, other, each

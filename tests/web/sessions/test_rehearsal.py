@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import re
+import threading
+from http.server import BaseHTTPRequestHandler, HTTPServer
 from pathlib import Path
 
 import pytest
 
 from costeer.sessions.plan import balance, session_steps
 from costeer.sessions.plan_file import parsed_plan
+from costeer.sessions.rehearsal_server import RehearsalServer
 from costeer.sessions.rehearse import rehearsal_plan, rehearse
 from costeer.sessions.robot import RehearsalSettings
 
@@ -37,6 +40,25 @@ def test_settings_that_cannot_be_leave_no_folder(
     with pytest.raises(ValueError, match=f"{next(iter(wrong))} is"):
         rehearse(tmp_path / "study", settings)
     assert not (tmp_path / "study").exists()
+
+
+@pytest.mark.parametrize("length", [7, 99])
+def test_an_answer_that_was_cut_off_is_none(tmp_path: Path, length: int) -> None:
+    """The server was killed in the middle of one, with its length told or not kept."""
+
+    class Killed(BaseHTTPRequestHandler):
+        def do_GET(self) -> None:
+            self.send_response(200)
+            self.send_header("Content-Length", str(length))
+            self.end_headers()
+            self.wfile.write(b'{"step"')
+
+    with HTTPServer(("127.0.0.1", 0), Killed) as killed:
+        threading.Thread(target=killed.handle_request).start()
+        server = RehearsalServer(tmp_path, 1.0)
+        server.address = f"http://127.0.0.1:{killed.server_port}"
+        with pytest.raises(OSError, match="api/session was cut off"):
+            server.ask("/api/session")
 
 
 @pytest.mark.browser
