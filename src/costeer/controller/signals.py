@@ -29,11 +29,14 @@ class Request(NamedTuple):
             `Measurement.side` soon; NaN for no verdict [-].
         requested: A lane change asked for from outside: indicator or script.
         change_duration: That a lane change is to take; NaN: the method's own [s].
+        indicator: Side that the driver's indicator is set to, -1 right, 0 off, +1
+            left [-].
     """
 
     crossing_probability: Real = math.nan
     requested: Flag = False
     change_duration: Real = math.nan
+    indicator: Real = 0.0
 
 
 class Intention(NamedTuple):
