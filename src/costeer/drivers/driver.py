@@ -10,6 +10,7 @@ from costeer.drivers import (
     decision,
     evasion,
     gaze,
+    indicating,
     longitudinal,
     reliance,
     tracking,
@@ -19,6 +20,7 @@ from costeer.drivers.arm import ArmCommand, ArmParameters, wanted_torque
 from costeer.drivers.decision import DecisionState, Draws
 from costeer.drivers.evasion import Evasion, EvasionParameters, EvasionState
 from costeer.drivers.gaze import GazeDraws, GazeParameters, GazeState
+from costeer.drivers.indicating import IndicatorParameters, IndicatorState
 from costeer.drivers.interface import (
     Action,
     DriverNoise,
@@ -54,6 +56,7 @@ class DriverParameters(NamedTuple):
         gaze: Glances [SI units]. Source: drivers/gaze.py.
         longitudinal: Speed [SI units]. Source: drivers/longitudinal.py.
         evasion: Emergencies [SI units]. Source: drivers/evasion.py.
+        indicator: When it is set [SI units]. Source: drivers/indicating.py.
 
     Example:
         >>> import costeer
@@ -70,6 +73,7 @@ class DriverParameters(NamedTuple):
     gaze: GazeParameters = GazeParameters()
     longitudinal: LongitudinalParameters = LongitudinalParameters()
     evasion: EvasionParameters = EvasionParameters()
+    indicator: IndicatorParameters = IndicatorParameters()
 
 
 class DriverState(NamedTuple):
@@ -82,6 +86,7 @@ class DriverState(NamedTuple):
     gaze: GazeState
     longitudinal: LongitudinalState
     evasion: EvasionState
+    indicator: IndicatorState
 
 
 @compiled
@@ -96,6 +101,7 @@ def initial_state(parameters: DriverParameters, lateral_position: Real) -> Drive
         gaze=gaze.initial_state(),
         longitudinal=longitudinal.initial_state(),
         evasion=evasion.initial_state(),
+        indicator=indicating.initial_state(),
     )
 
 
@@ -198,13 +204,13 @@ def see(
     """Turn what is seen into an intended steering-wheel angle [rad]."""
     eyes = parameters.vision
     speed = xp.maximum(measurement.longitudinal_velocity, SLOWEST_SEEN)
-    near_distance = speed * eyes.near_time
+    near_distance = xp.minimum(speed * eyes.near_time, eyes.sight)
     wanted = tracking.aim(
         aimed,
         knowledge.alignment,
         measurement.longitudinal_position,
         near_distance,
-        speed * eyes.anticipation_time,
+        xp.minimum(speed * eyes.anticipation_time, eyes.sight),
     )
     new_state, asked = vision.step(
         eyes,
@@ -341,6 +347,7 @@ def acted(
             change_duration=decided.change_duration,
             time_to_crossing=decision.time_to_crossing(decided),
         ),
+        indicator=state.indicator.side,
     )
 
 
@@ -388,6 +395,15 @@ def act(
         dt,
     )
     foot = brake(parameters, state, foot, evading, measurement, dt)
+    lever = indicating.step(
+        parameters.indicator,
+        state.indicator,
+        decided.started,
+        steered,
+        decided.change_duration,
+        noise.indicator_uniform,
+        dt,
+    )
     new_state = DriverState(
         vision=eyes,
         reliance=hands,
@@ -396,5 +412,6 @@ def act(
         gaze=head,
         longitudinal=foot,
         evasion=evaded,
+        indicator=lever,
     )
     return new_state, acted(parameters, new_state, knowledge, measurement, command)

@@ -101,6 +101,7 @@ class DriverNoise(NamedTuple):
     leader_uniform: Real
     tracker_uniform: Real
     abandoned_uniform: Real
+    indicator_uniform: Real
 
 
 NORMAL_DRAWS = 9
@@ -130,6 +131,7 @@ class Action(NamedTuple):
             nobody knows it [-].
         at_home: Whether the driver keeps the cruising lane, which ends an event zone.
         plan: Of the decided lane change, for a scripted intention.
+        indicator: Side that the indicator is set to, -1 right, 0 off, +1 left [-].
     """
 
     arm: ArmCommand
@@ -138,6 +140,7 @@ class Action(NamedTuple):
     intention: Real = 0.0
     at_home: Flag = True
     plan: Plan = Plan()
+    indicator: Real = 0.0
 
 
 class Draw(NamedTuple):

@@ -308,6 +308,16 @@ COLUMNS: tuple[Column, ...] = (
         stepped=True,
         mirrored="flipped",
     ),
+    Column(
+        "driver_indicator",
+        "-",
+        "int8",
+        "set by the driver: -1 right, 0 off, +1 left",
+        "action.indicator",
+        stepped=True,
+        mirrored="flipped",
+        before=0.0,
+    ),
     _number("lead_distance", "m", "to the leader; NaN without one", "lead.distance"),
     _number("lead_velocity", "m/s", "of the leader; NaN without one", "lead.velocity"),
     Column(

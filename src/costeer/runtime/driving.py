@@ -160,6 +160,7 @@ class Driving:
             crossing_probability=self._verdict(),
             requested=self._requests(),
             leader_uniform=float(self._draws[self._leaders % len(self._draws)]),
+            indicator=float(self._indicator.side),
         )
 
     def _sees_head(self, now: float) -> bool:
