@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from costeer.base import array as xp
-from costeer.base.array import Flag, Real, compiled
+from costeer.base.array import Real, compiled
 from costeer.drivers import (
     decision,
     evasion,
@@ -27,7 +27,8 @@ from costeer.drivers.interface import (
     Knowledge,
     Perception,
     Plan,
-    as_leader,
+    leader_in,
+    unless,
 )
 from costeer.drivers.longitudinal import LongitudinalParameters, LongitudinalState
 from costeer.drivers.overtaking import DecisionParameters, Surroundings
@@ -36,7 +37,6 @@ from costeer.drivers.tracking import TrackingParameters, TrackingState
 from costeer.drivers.vision import VisionNoise, VisionParameters, VisionState
 from costeer.plant.parameters import holding_stiffness
 from costeer.plant.road import cruising_lane
-from costeer.plant.traffic import LeaderState
 from costeer.sensing.measurement import Measurement
 
 SLOWEST_SEEN = 5.0
@@ -227,27 +227,6 @@ def see(
 
 
 @compiled
-def leader_in(perception: Perception, direction: Real) -> LeaderState:
-    """The next car in the lane that the driver changes to; none without a change.
-
-    Args:
-        perception: With the cars around.
-        direction: Of the lane change, -1 right, 0 none, +1 left [-].
-    """
-    around = perception.around
-    lane = xp.select(direction > 0.0, around.left, around.right)
-    leader = as_leader(lane.ahead, perception.measurement)
-    changes = direction != 0.0
-    return leader._replace(present=leader.present & changes)
-
-
-@compiled
-def unless(unseen: Flag, leader: LeaderState) -> LeaderState:
-    """The leader, if the driver has had the time to see it."""
-    return leader._replace(present=leader.present & xp.logical_not(unseen))
-
-
-@compiled
 def feel(
     parameters: DriverParameters,
     state: DriverState,
@@ -395,15 +374,7 @@ def act(
         dt,
     )
     foot = brake(parameters, state, foot, evading, measurement, dt)
-    lever = indicating.step(
-        parameters.indicator,
-        state.indicator,
-        decided.started,
-        steered,
-        decided.change_duration,
-        noise.indicator_uniform,
-        dt,
-    )
+    lever = parameters.indicator, state.indicator, decided, steered
     new_state = DriverState(
         vision=eyes,
         reliance=hands,
@@ -412,6 +383,6 @@ def act(
         gaze=head,
         longitudinal=foot,
         evasion=evaded,
-        indicator=lever,
+        indicator=indicating.step(*lever, noise.indicator_uniform, dt),
     )
     return new_state, acted(parameters, new_state, knowledge, measurement, command)

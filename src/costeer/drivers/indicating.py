@@ -10,8 +10,8 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from costeer.base import array as xp
-from costeer.base.array import Flag, Real, compiled
-from costeer.drivers.decision import NEVER
+from costeer.base.array import Real, compiled
+from costeer.drivers.decision import NEVER, DecisionState
 
 
 class IndicatorParameters(NamedTuple):
@@ -81,9 +81,8 @@ def drawn_delay(parameters: IndicatorParameters, uniform: Real) -> Real:
 def step(
     parameters: IndicatorParameters,
     state: IndicatorState,
-    started: Flag,
+    decided: DecisionState,
     side: Real,
-    duration: Real,
     uniform: Real,
     dt: Real,
 ) -> IndicatorState:
@@ -92,13 +91,12 @@ def step(
     Args:
         parameters: Of this driver.
         state: Of the hand.
-        started: Whether steering to a lane starts at this step.
+        decided: When steering starts, and how long it is to last: it goes off then.
         side: That the driver steers to, 0 for none [-].
-        duration: Planned for this lane change; it goes off after it [s].
         uniform: In [0, 1), drawn if steering starts.
         dt: Control step [s].
     """
-    delay = xp.when(started, drawn_delay, (parameters, uniform), state.delay)
-    time = xp.select(started, 0.0, state.time + dt)
-    on = (time >= delay) & (time < duration)
+    delay = xp.when(decided.started, drawn_delay, (parameters, uniform), state.delay)
+    time = xp.select(decided.started, 0.0, state.time + dt)
+    on = (time >= delay) & (time < decided.change_duration)
     return IndicatorState(delay=delay, time=time, side=xp.select(on, side, 0.0))

@@ -11,6 +11,7 @@ import math
 from collections.abc import Callable
 from typing import Any, Generic, NamedTuple, TypeVar
 
+from costeer.base import array as xp
 from costeer.base.array import Flag, Real, compiled
 from costeer.base.sources import source_hash
 from costeer.drivers.arm import ArmCommand
@@ -78,6 +79,27 @@ def as_leader(ahead: Ahead, measurement: Measurement) -> LeaderState:
         longitudinal_velocity=ahead.velocity,
         lane=measurement.lane,
     )
+
+
+@compiled
+def leader_in(perception: Perception, direction: Real) -> LeaderState:
+    """The next car in the lane that the driver changes to; none without a change.
+
+    Args:
+        perception: With the cars around.
+        direction: Of the lane change, -1 right, 0 none, +1 left [-].
+    """
+    around = perception.around
+    lane = xp.select(direction > 0.0, around.left, around.right)
+    leader = as_leader(lane.ahead, perception.measurement)
+    changes = direction != 0.0
+    return leader._replace(present=leader.present & changes)
+
+
+@compiled
+def unless(unseen: Flag, leader: LeaderState) -> LeaderState:
+    """The leader, if the driver has had the time to see it."""
+    return leader._replace(present=leader.present & xp.logical_not(unseen))
 
 
 class DriverNoise(NamedTuple):

@@ -190,17 +190,16 @@ def half_step(
     request = request._replace(indicator=seat.action.indicator)
     limit = xp.select(parameters.assists > 0.5, parameters.column.torque_limit, 0.0)
     wrong, road = parameters.mistakes, parameters.road
-    right = Heard(measurement, request, state.mistakes)
     given = wrong, state.mistakes, road, measurement, request, seat.action, state.time
-    got = xp.when(wrong.any > 0.5, heard, given, right)
+    truly = Heard(measurement, request, state.mistakes)
+    got = xp.when(wrong.any > 0.5, heard, given, truly)
     method_state, signals = rule.step(
         parameters.controller, state.method, got.measurement, got.request, DT
     )
     asked = contained(signals.applied_torque, limit)
-    to_motor = wrong, got.memory, measurement.side, asked, limit, state.time
-    memory, command = xp.when(
-        wrong.any > 0.5, given_torque, to_motor, (got.memory, asked)
-    )
+    told = wrong, got.memory, measurement.side, asked, limit, state.time
+    same = got.memory, asked
+    memory, command = xp.when(wrong.any > 0.5, given_torque, told, same)
     sample = Sample(
         time=state.time,
         measurement=measurement,

@@ -18,6 +18,7 @@ from costeer.sensing.sensors import SensorParameters
 
 P = TypeVar("P")
 
+
 class StartParameters(NamedTuple):
     """How a trial begins.
 

@@ -49,8 +49,7 @@ from costeer.records import metadata as kinds
 from costeer.records.cars import car_columns
 from costeer.records.columns import TrialRecord, with_method_columns
 from costeer.records.row import ROW_COLUMNS, record_columns
-from costeer.scenarios.mistakes import described as told
-from costeer.scenarios.mistakes import size_of
+from costeer.scenarios import mistakes
 from costeer.scenarios.reading import scenario_named
 
 SLOWEST_SHARE = 0.5
@@ -215,7 +214,11 @@ def trial_metadata(
         "speed": setup.speed,
         "scenario": scenario_metadata(setup),
         "mistakes": [
-            {"kind": each.kind, "size": size_of(each), "about": told(each)}
+            {
+                "kind": each.kind,
+                "size": mistakes.size_of(each),
+                "about": mistakes.described(each),
+            }
             for each in trial_mistakes(setup)
         ],
         "driver": _driver_text(setup, driver),

@@ -138,7 +138,7 @@ MISTAKES: dict[str, MistakeKind] = {
         "mistakes.off_time",
         "s",
         60.0,
-        0.0,
+        1.0,
         3600.0,
         _OFF,
     ),
