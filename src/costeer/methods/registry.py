@@ -10,13 +10,14 @@ from costeer.methods.checked import checked_method
 from costeer.methods.ibhs import IBHS
 from costeer.methods.interface import Method
 from costeer.methods.manual import MANUAL
+from costeer.methods.rivals import RIVALS
 
 AnyMethod: TypeAlias = Method[Any, Any]  # Any: parameters and state are its own
 
 ENTRY_POINTS = "costeer.methods"
 """Group of entry points under which an installed package offers its methods."""
 
-METHODS: dict[str, AnyMethod] = {method.name: method for method in (IBHS, MANUAL)}
+METHODS: dict[str, AnyMethod] = {each.name: each for each in (IBHS, MANUAL, *RIVALS)}
 """Methods that need no place to be found; a script may add its own."""
 
 
