@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import NamedTuple, Protocol
 
 from costeer.base import array as xp
 from costeer.base.array import Flag, Real, compiled
@@ -38,6 +38,21 @@ class InferenceParameters(NamedTuple):
     settled_yaw: Real = 0.008726646259971648
 
 
+class Debouncing(Protocol):
+    """What of the parameters does not depend on where a verdict comes from."""
+
+    @property
+    def trigger_samples(self) -> Real: ...  # noqa: D102
+    @property
+    def lock_duration(self) -> Real: ...  # noqa: D102
+    @property
+    def settled_duration(self) -> Real: ...  # noqa: D102
+    @property
+    def settled_offset(self) -> Real: ...  # noqa: D102
+    @property
+    def settled_yaw(self) -> Real: ...  # noqa: D102
+
+
 class InferenceState(NamedTuple):
     """What the trigger remembers.
 
@@ -64,7 +79,7 @@ def initial_state() -> InferenceState:
 
 @compiled
 def settled(
-    parameters: InferenceParameters, road: RoadParameters, measurement: Measurement
+    parameters: Debouncing, road: RoadParameters, measurement: Measurement
 ) -> Flag:
     """Whether the car runs straight near the centre of its lane."""
     centre = lane_centre(road, measurement.lane)
@@ -77,7 +92,7 @@ def settled(
 
 @compiled
 def lock(
-    parameters: InferenceParameters,
+    parameters: Debouncing,
     state: InferenceState,
     is_settled: Flag,
     path_ended: Flag,
@@ -108,6 +123,36 @@ def lock(
 
 
 @compiled
+def debounce(
+    parameters: Debouncing,
+    state: InferenceState,
+    road: RoadParameters,
+    measurement: Measurement,
+    positive: Flag,
+    path_ended: Flag,
+    dt: Real,
+) -> tuple[InferenceState, Intention]:
+    """Count positives while nothing locks; return the state and the intention.
+
+    Args:
+        parameters: Samples, lock.
+        state: Of the trigger.
+        road: Lanes, for the settled car.
+        measurement: Lane, side and rest of the car.
+        positive: Whether this sample speaks for a crossing.
+        path_ended: Whether a path came to its end at the step before.
+        dt: Control step [s].
+    """
+    is_settled = settled(parameters, road, measurement)
+    state = lock(parameters, state, is_settled, path_ended, dt)
+    counted = positive & xp.logical_not(state.locked)
+    num_positive = xp.select(counted, state.num_positive + 1.0, 0.0)
+    new_state = state._replace(num_positive=num_positive)
+    detected = num_positive >= parameters.trigger_samples
+    return new_state, Intention(detected=detected, side=measurement.side)
+
+
+@compiled
 def step(
     parameters: InferenceParameters,
     state: InferenceState,
@@ -128,12 +173,5 @@ def step(
         path_ended: Whether a path came to its end at the step before.
         dt: Control step [s].
     """
-    is_settled = settled(parameters, road, measurement)
-    state = lock(parameters, state, is_settled, path_ended, dt)
-    positive = (crossing_probability >= parameters.threshold) & xp.logical_not(
-        state.locked
-    )
-    num_positive = xp.select(positive, state.num_positive + 1.0, 0.0)
-    new_state = state._replace(num_positive=num_positive)
-    detected = num_positive >= parameters.trigger_samples
-    return new_state, Intention(detected=detected, side=measurement.side)
+    positive = crossing_probability >= parameters.threshold
+    return debounce(parameters, state, road, measurement, positive, path_ended, dt)

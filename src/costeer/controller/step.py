@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from collections.abc import Callable
+from typing import NamedTuple, Protocol
 
 from costeer.base import array as xp
-from costeer.base.array import Flag, Real, compiled
+from costeer.base.array import Flag, Real, compiled, inlined
 from costeer.controller import (
     actuation,
     consistency,
@@ -107,24 +108,70 @@ def initial_state(parameters: ControllerParameters, lane: Real) -> ControllerSta
     )
 
 
+class Planning(Protocol):
+    """Parameters of a method that infers an intention and plans paths."""
+
+    @property
+    def road(self) -> RoadParameters: ...  # noqa: D102
+    @property
+    def inference(self) -> InferenceParameters: ...  # noqa: D102
+    @property
+    def trajectory(self) -> TrajectoryParameters: ...  # noqa: D102
+
+
+class Planned(Protocol):
+    """What such a method remembers."""
+
+    @property
+    def inference(self) -> InferenceState: ...  # noqa: D102
+    @property
+    def trajectory(self) -> TrajectoryState: ...  # noqa: D102
+    @property
+    def replan(self) -> Flag: ...  # noqa: D102
+
+
+class Guiding(Protocol):
+    """Parameters of a method that guides to a target by Eqs. (4) and (5)."""
+
+    @property
+    def car(self) -> CarParameters: ...  # noqa: D102
+    @property
+    def column(self) -> ColumnParameters: ...  # noqa: D102
+    @property
+    def preview(self) -> PreviewParameters: ...  # noqa: D102
+    @property
+    def guidance(self) -> GuidanceParameters: ...  # noqa: D102
+
+
+@compiled
+def lasting(own: TrajectoryParameters, request: Request) -> TrajectoryParameters:
+    """How a lane change is planned now: as long as is asked for, or the usual."""
+    asked = request.change_duration
+    duration = xp.select(xp.isfinite(asked), asked, own.change_duration)
+    return own._replace(change_duration=duration)
+
+
 @compiled
 def plan(
-    parameters: ControllerParameters,
-    state: ControllerState,
+    parameters: Planning,
+    state: Planned,
     measurement: Measurement,
     request: Request,
+    consistent: Flag,
     dt: Real,
 ) -> tuple[InferenceState, Intention, TrajectoryState, Target]:
     """Infer the intention, choose mode and path.
 
     A lane change that is asked for counts as an intention.
+
+    Args:
+        parameters: Trigger, paths and road.
+        state: Trigger, plan, and whether the step before called for a new one.
+        measurement: This step's sample.
+        request: Verdict of the predictor and what is asked for from outside.
+        consistent: Verdict of the step before.
+        dt: Control step [s].
     """
-    own = parameters.trajectory
-    duration = xp.select(
-        xp.isfinite(request.change_duration),
-        request.change_duration,
-        own.change_duration,
-    )
     inference_state, inferred = inference.step(
         parameters.inference,
         state.inference,
@@ -138,12 +185,12 @@ def plan(
         detected=inferred.detected | request.requested, side=inferred.side
     )
     trajectory_state, target = trajectory.step(
-        own._replace(change_duration=duration),
+        lasting(parameters.trajectory, request),
         state.trajectory,
         parameters.road,
         measurement,
         intention,
-        state.consistency.consistent,
+        consistent,
         state.replan,
     )
     return inference_state, intention, trajectory_state, target
@@ -151,7 +198,7 @@ def plan(
 
 @compiled
 def instruct(
-    parameters: ControllerParameters, target: Target, measurement: Measurement
+    parameters: Guiding, target: Target, measurement: Measurement
 ) -> tuple[Preview, Guidance]:
     """Errors at the preview point and the torques they call for."""
     errors = preview.preview(parameters.preview, parameters.car, target, measurement)
@@ -165,26 +212,36 @@ def judge(
     parameters: ControllerParameters,
     state: ControllerState,
     measurement: Measurement,
-    errors: Preview,
+    rate: Real,
     torques: Guidance,
     dt: Real,
 ) -> tuple[HandsState, ConsistencyState, Consistency]:
-    """Whether driver and system want the same path."""
+    """Whether driver and system want the same path.
+
+    Args:
+        parameters: Of all stages.
+        state: Of all stages.
+        measurement: This step's sample.
+        rate: What both torques are multiplied by in Eqs. (7) and (8).
+        torques: Of the guidance.
+        dt: Control step [s].
+    """
     hands_state, own_torque = hands.step(parameters.hands, state.hands, measurement, dt)
     consistency_state, verdict = consistency.step(
         parameters.consistency,
         state.consistency,
         torques.instructed_torque,
         measurement.driver_torque,
-        errors.heading_error_rate,
+        rate,
         dt,
         own_torque,
     )
     return hands_state, consistency_state, verdict
 
 
-@compiled
-def step(
+@inlined
+def step_by(
+    rate_of: Callable[[Measurement, Preview], Real],
     parameters: ControllerParameters,
     state: ControllerState,
     measurement: Measurement,
@@ -194,6 +251,7 @@ def step(
     """Run all stages once; return the state and everything they computed.
 
     Args:
+        rate_of: What both torques are multiplied by in Eqs. (7) and (8).
         parameters: Of all stages.
         state: Of all stages.
         measurement: This step's sample.
@@ -201,11 +259,11 @@ def step(
         dt: Control step [s].
     """
     inference_state, intention, trajectory_state, target = plan(
-        parameters, state, measurement, request, dt
+        parameters, state, measurement, request, state.consistency.consistent, dt
     )
     errors, torques = instruct(parameters, target, measurement)
     hands_state, consistency_state, verdict = judge(
-        parameters, state, measurement, errors, torques, dt
+        parameters, state, measurement, rate_of(measurement, errors), torques, dt
     )
     strength_state, gain = strength.step(
         parameters.strength, state.strength, verdict.consistent, dt
@@ -234,3 +292,21 @@ def step(
         consistency=verdict,
         replan=replan,
     )
+
+
+@compiled
+def heading_error_rate(measurement: Measurement, errors: Preview) -> Real:
+    """e_theta' [rad/s], by which the paper judges a torque."""
+    return errors.heading_error_rate
+
+
+@compiled
+def step(
+    parameters: ControllerParameters,
+    state: ControllerState,
+    measurement: Measurement,
+    request: Request,
+    dt: Real,
+) -> tuple[ControllerState, Assistance]:
+    """One step of the paper's controller: `step_by` the heading-error rate."""
+    return step_by(heading_error_rate, parameters, state, measurement, request, dt)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 from costeer.controller import step as controller
 from costeer.controller.actuation import ActuationParameters
@@ -82,6 +83,29 @@ def parameters(
         ),
         actuation=ActuationParameters(strength_factor=condition.strength_factor),
     )
+
+
+def like_ibhs(
+    kind: type[Any],  # Any: parameters of a method that shares stages with this one
+    condition: Condition,
+    car: CarParameters,
+    column: ColumnParameters,
+    road: RoadParameters,
+) -> Any:
+    """Parameters of another kind, whose groups of the same name are as here.
+
+    Two methods that share a stage share its numbers, so that what they differ in is
+    their law.
+    """
+    usual = parameters(condition, car, column, road)._asdict()
+    shared = {name: usual[name] for name in kind._fields if name in usual}
+    return kind(**shared)
+
+
+def shared_tunables(kind: type[Any]) -> tuple[Tunable, ...]:
+    """Those tunables that another kind of parameters has, too."""
+    shared = set(kind._fields)
+    return tuple(t for t in TUNABLES if t.leaf.partition(".")[0] in shared)
 
 
 IBHS = Method(
