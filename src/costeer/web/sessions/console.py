@@ -300,6 +300,7 @@ ACTIONS: dict[str, tuple[Callable[..., None], tuple[str, ...]]] = {
     "start": (lambda console: console._command("start"), ()),
     "pause": (lambda console: console._command("pause", "experimenter"), ()),
     "resume": (lambda console: console._command("resume"), ()),
+    "acknowledge": (lambda console: console._command("acknowledge"), ()),
     "stop": (Console.stop, ()),
     "emergency": (lambda console: console.stop("emergency stop"), ()),
     "finish": (Console.enough, ()),

@@ -304,7 +304,7 @@ class Desk:
         check_drive(setup)
         number, record = self.attempts.next(who, step)
         self._driven, self._is_begun = (who, step.id, number), False
-        options = PageOptions(self.devices.input, False, plan.self_paced)
+        options = PageOptions(self.devices.input, False, plan.self_paced, False)
         self._drive = StepDrive(setup, record, options, self._end)
         self._drive.begin()
 

@@ -203,6 +203,11 @@ class StepDrive:
         """Driven [m]; 0 before the start."""
         return self._number("longitudinal_position")
 
+    @property
+    def _is_broken(self) -> bool:
+        """Whether a fault waits for the experimenter's word."""
+        return Fault(int(self._number("fault"))).must_be_acknowledged
+
     def _written(self) -> float | None:
         """How long ago the record was written last [s]; None before it is begun."""
         for file in (record_paths(self._record).stream, self._record):
@@ -223,6 +228,7 @@ class StepDrive:
         return {
             "state": self.state,
             "reason": self.reason,
+            "is_broken": self._is_broken,
             "seconds": round(self.seconds, 2),
             "metres": round(self.metres, 1),
             "length": self.setup.trial.length,
