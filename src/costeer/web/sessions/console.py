@@ -222,11 +222,11 @@ class Console:
         drive.end(False, reason)
 
     def enough(self) -> None:
-        """Practice is enough, whatever the clock says."""
+        """Practice is enough, whatever clock and criterion say."""
         standing = self._desk.present()
         if standing.step.kind != "practise" or self._desk.drive is None:
             raise ValueError("no practice is on")
-        self._desk.drive.end(True, "ended by the experimenter")
+        self._desk.drive.end(True, "ended by the experimenter", True)
 
     def skip(self, step: str, reason: str) -> None:
         """Leave the step out."""
