@@ -11,13 +11,13 @@ from hypothesis import strategies as st
 
 from costeer.web import intake
 from costeer.web.messages import (
+    Acknowledge,
     Indicator,
     Input,
     Latency,
     Pause,
     Ping,
     Restart,
-    Acknowledge,
     Resume,
     Set,
     Start,

@@ -35,7 +35,7 @@ def withdraw(session: Session, participant: str) -> int:
 
 
 def files_of(session: Session, participant: str) -> list[Path]:
-    """Every file of a participant: of drives, streams and traces too, and the head's."""
+    """Every file of a participant: drives, streams, traces, the head's calibration."""
     found = [calibration_file(participant)]
     for room in ROOMS:
         found += sorted((session.folder / room).glob(f"{participant}-*"))

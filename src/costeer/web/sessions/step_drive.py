@@ -39,6 +39,7 @@ _STATES = {
     int(RunState.PAUSED): PAUSED,
     int(RunState.ENDED): SAVING,
 }
+_FAULTS = {int(each): each for each in Fault}
 
 
 @cache
@@ -216,7 +217,7 @@ class StepDrive:
     @property
     def _is_broken(self) -> bool:
         """Whether a fault waits for the experimenter's word."""
-        return Fault(int(self._number("fault"))).must_be_acknowledged
+        return _FAULTS[int(self._number("fault"))].must_be_acknowledged
 
     def _written(self) -> float | None:
         """How long ago the record was written last [s]; None before it is begun."""
