@@ -38,12 +38,16 @@ def tree(file: Path) -> ast.Module:
     return ast.parse(file.read_text(encoding="utf-8"))
 
 
-def functions(folder: Path = PACKAGE) -> Iterator[Function]:
+@cache
+def functions(folder: Path = PACKAGE) -> tuple[Function, ...]:
     """Every function below a folder, methods and inner functions included."""
-    for file in files(folder):
-        for node in ast.walk(tree(file)):
-            if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
-                yield Function(file, node)
+    kinds = ast.FunctionDef | ast.AsyncFunctionDef
+    return tuple(
+        Function(file, node)
+        for file in files(folder)
+        for node in ast.walk(tree(file))
+        if isinstance(node, kinds)
+    )
 
 
 def argument_names(function: Function) -> list[str]:

@@ -6,7 +6,7 @@ import ast
 import re
 import sys
 import tomllib
-from collections.abc import Iterator
+from functools import cache
 from importlib.metadata import packages_distributions
 
 from tests.architecture.source import ROOT, files, tree
@@ -34,9 +34,10 @@ def named(requirements: list[str]) -> set[str]:
     return {re.split(r"[^A-Za-z0-9._-]", line, maxsplit=1)[0] for line in requirements}
 
 
-def imported() -> Iterator[str]:
+@cache
+def imported() -> frozenset[str]:
     """Names of the distributions that package and benchmarks import, anywhere."""
-    owners = packages_distributions()
+    owners, found = packages_distributions(), set()
     for file in [*files(), *files(ROOT / "benchmarks")]:
         for node in ast.walk(tree(file)):
             names = []
@@ -44,22 +45,23 @@ def imported() -> Iterator[str]:
                 names = [alias.name for alias in node.names]
             elif isinstance(node, ast.ImportFrom) and node.module:
                 names = [node.module]
-            for top in {name.partition(".")[0] for name in names}:
-                if top not in sys.stdlib_module_names | OWN:
-                    yield PEERS.get(top) or owners.get(top, [top])[0].lower()
+            found |= {name.partition(".")[0] for name in names}
+    return frozenset(
+        PEERS.get(top) or owners.get(top, [top])[0].lower()
+        for top in found - sys.stdlib_module_names - OWN
+    )
 
 
 def test_every_base_dependency_is_imported() -> None:
-    found = set(imported())
-    by_name = {part for part, user in LOADED_BY_NAME.items() if user in found}
-    assert named(PROJECT["dependencies"]) - found - by_name == set()
+    by_name = {part for part, user in LOADED_BY_NAME.items() if user in imported()}
+    assert named(PROJECT["dependencies"]) - imported() - by_name == set()
 
 
 def test_every_import_is_a_dependency_or_of_an_extra() -> None:
     extras = PROJECT["optional-dependencies"].values()
     asked = named([*PROJECT["dependencies"], *(line for e in extras for line in e)])
     made_of = {part for part, whole in COMES_WITH.items() if whole in asked}
-    assert set(imported()) - asked - made_of == set()
+    assert imported() - asked - made_of == set()
 
 
 def test_extras_add_to_the_base_and_do_not_repeat_it() -> None:

@@ -8,8 +8,6 @@ from functools import cache
 from importlib import import_module
 from typing import NamedTuple
 
-import pytest
-
 from tests.architecture.source import ROOT, tree
 
 TEXT = (ROOT / "docs" / "paper.md").read_text("utf-8")
@@ -126,23 +124,14 @@ def test_no_item_stands_twice() -> None:
     assert len(items) == len(set(items))
 
 
-@pytest.mark.parametrize("row", ROWS, ids=lambda row: row.item)
-def test_a_row_has_no_empty_cell(row: Row) -> None:
-    assert all(row)
-
-
-@pytest.mark.parametrize("row", ROWS, ids=lambda row: row.item)
-def test_functions_of_a_row_can_be_imported(row: Row) -> None:
-    found = names(row.function)
-    assert found
-    assert [name for name in found if not is_importable(name)] == []
-
-
-@pytest.mark.parametrize("row", ROWS, ids=lambda row: row.item)
-def test_tests_of_a_row_exist(row: Row) -> None:
-    found = names(row.test)
-    assert found
-    assert [name for name in found if not is_a_test(name)] == []
+def test_every_row_is_whole_and_names_functions_and_tests_that_exist() -> None:
+    assert [row.item for row in ROWS if not all(row)] == []
+    for row in ROWS:
+        functions, tests = names(row.function), names(row.test)
+        assert functions, row.item
+        assert tests, row.item
+        assert [name for name in functions if not is_importable(name)] == [], row.item
+        assert [name for name in tests if not is_a_test(name)] == [], row.item
 
 
 def test_every_section_explains_a_row() -> None:

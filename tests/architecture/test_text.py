@@ -39,22 +39,14 @@ def test_no_file_holds(pattern: re.Pattern[str]) -> None:
     assert [name for name, text in texts.items() if pattern.search(text)] == []
 
 
-@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
-def test_commands_of_a_page_exist(page: str) -> None:
-    lines = code_lines((ROOT / page).read_text("utf-8"))
-    called = [
-        m[1] for line in lines if (m := re.match(r"(?:\$ )?costeer ([a-z]+)", line))
-    ]
-    assert [name for name in called if name not in CommandGroup.summaries] == []
-
-
-@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
-def test_make_targets_of_a_page_exist(page: str) -> None:
+def test_commands_and_make_targets_of_the_pages_exist() -> None:
     makefile = (ROOT / "Makefile").read_text("utf-8")
-    targets = set(re.findall(r"^([a-z][a-z-]*):", makefile, re.MULTILINE))
-    lines = code_lines((ROOT / page).read_text("utf-8"))
-    called = [m[1] for line in lines if (m := re.match(r"(?:\$ )?make ([a-z]+)", line))]
-    assert [name for name in called if name not in targets] == []
+    known = {f"costeer {name}" for name in CommandGroup.summaries}
+    known |= {f"make {t}" for t in re.findall(r"^([a-z][a-z-]*):", makefile, re.M)}
+    for page in PAGES:
+        lines = "\n".join(code_lines(page.read_text("utf-8")))
+        called = re.findall(r"^(?:\$ )?((?:costeer|make) [a-z]+)", lines, re.M)
+        assert set(called) <= known, page.name
 
 
 def test_readme_shows_the_main_job() -> None:

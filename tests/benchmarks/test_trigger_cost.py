@@ -74,6 +74,7 @@ def test_in_manual_driving_neither_a_trigger_nor_its_absence_costs_anything() ->
     assert np.isnan(found("manual", FALSE_TRIGGER).costs["gain_minimum"]).all()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("condition", DRIVEN[1:])
 def test_a_false_trigger_is_a_conflict_where_there_was_none(condition: str) -> None:
     false, none = found(condition, FALSE_TRIGGER), found(condition, NO_TRIGGER)

@@ -79,7 +79,9 @@ def phases(states: list[DecisionState]) -> list[float]:
     return [phase for phase, _ in itertools.groupby(s.phase for s in states)]
 
 
-@pytest.mark.parametrize("uniform", [0.0, 0.5, 0.999])
+@pytest.mark.parametrize(
+    "uniform", [0.0, *(pytest.param(u, marks=pytest.mark.slow) for u in (0.5, 0.999))]
+)
 def test_without_a_share_no_lane_change_is_given_up(uniform: float) -> None:
     states = overtaking(uniform)
     order = [CRUISING, PREPARING, CHANGING, PASSING, PREPARING_RETURN, RETURNING]
@@ -89,6 +91,7 @@ def test_without_a_share_no_lane_change_is_given_up(uniform: float) -> None:
     assert {s.pause for s in states} == {0.0}
 
 
+@pytest.mark.slow
 def test_a_lane_change_whose_lot_is_not_drawn_is_as_without_a_share() -> None:
     assert overtaking(0.5, share=0.4) == overtaking(0.5)
     assert overtaking(0.39, share=0.4) != overtaking(0.39)

@@ -130,6 +130,7 @@ def test_replayed_hands_repeat_the_drive_they_were_taken_from() -> None:
     np.testing.assert_allclose(apart[:300], 0.8, atol=0.01)  # nobody looks
 
 
+@pytest.mark.slow
 def test_after_the_recording_the_hands_rest() -> None:
     first = hundred_metres()
     columns = {name: values[:60] for name, values in first.columns.items()}

@@ -123,7 +123,10 @@ def first(flags: NDArray[np.bool_]) -> NDArray[np.float64]:
     return np.where(after.any(axis=0), after.argmax(axis=0) * DT, math.inf)
 
 
-@pytest.mark.parametrize("preparation", [0.1, 0.35, 1.8])
+@pytest.mark.parametrize(
+    "preparation",
+    [0.1, *(pytest.param(t, marks=pytest.mark.slow) for t in (0.35, 1.8))],
+)
 def test_a_head_never_jumps(preparation: float) -> None:
     # A raised cosine climbs at most π/2 amplitudes in its turning time.
     found = heads(preparation)

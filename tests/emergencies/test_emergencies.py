@@ -143,14 +143,14 @@ def test_every_planned_drive_can_be_and_is_found_again_from_its_row() -> None:
 
 def test_the_obstacle_appears_as_far_ahead_as_was_asked_for() -> None:
     drive = QUICK._replace(time_to_collision=2.0)
-    columns = simulate_trial(setup_of(Settings(), drive), engine="python").columns
+    columns = simulate_trial(setup_of(Settings(), drive)).columns
     first = int(np.flatnonzero(np.isfinite(columns["car_01_position"]))[0])
     place = columns["longitudinal_position"][first]
     speed = columns["longitudinal_velocity"][first]
     gap = columns["car_01_position"][first] - place - OBSTACLE_HALF - CAR_HALF
     assert place == pytest.approx(APPEARS_AT, abs=1.0)
     assert gap / speed == pytest.approx(2.0, abs=0.03)
-    record = simulate_trial(setup_of(Settings(), drive, False), engine="python")
+    record = simulate_trial(setup_of(Settings(), drive, False))
     assert "car_01_position" not in record.columns
 
 

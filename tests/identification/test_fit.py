@@ -21,10 +21,13 @@ from tests.identification.driving import (
 )
 from tests.records.mirror import mirrored
 
+SHORT, LONG = 2000.0, 8000.0
+"""Drives [m]."""
+
 
 @cache
-def fit_of(participant: int) -> DriverFit:
-    return fit_driver(recorded(participant))
+def fit_of(participant: int, length: float = LONG) -> DriverFit:
+    return fit_driver(recorded(participant, length))
 
 
 def part_of_a_drive() -> TrialRecord:
@@ -46,14 +49,14 @@ def by_name(fit: DriverFit) -> dict[str, Estimate]:
     return {estimate.name: estimate for estimate in fit.estimates}
 
 
-# One driver at once, the others with the tests that need several.
+# A short drive at once, whole ones with the tests that need several.
 @pytest.mark.parametrize(
-    "participant",
-    [1, *(pytest.param(n, marks=pytest.mark.slow) for n in (2, 3))],
+    ("participant", "length"),
+    [(1, SHORT), *(pytest.param(n, LONG, marks=pytest.mark.slow) for n in (1, 2, 3))],
 )
-def test_the_truth_is_near_every_estimate(participant: int) -> None:
+def test_the_truth_is_near_every_estimate(participant: int, length: float) -> None:
     truth = true_driver(participant)
-    for estimate in fit_of(participant).estimates:
+    for estimate in fit_of(participant, length).estimates:
         value = value_of(truth, estimate.name)
         # Twice the interval's half-width, four standard errors: one of 16,000 normal
         # estimates is outside. Whether 95 % hold is for the benchmark to count.
@@ -89,17 +92,16 @@ def test_twenty_drivers_are_in_their_intervals() -> None:
         assert sum(inside) >= 16, name
 
 
-@pytest.mark.parametrize(
-    "participant",
-    [1, *(pytest.param(n, marks=pytest.mark.slow) for n in (2, 3))],
-)
+@pytest.mark.slow
+@pytest.mark.parametrize("participant", [1, 2, 3])
 def test_prediction_errors_of_the_fitted_driver_are_white(participant: int) -> None:
     assert fit_of(participant).whiteness < WHITE
+    assert fit_of(participant).white_limit == WHITE
     assert fit_of(participant).notes == ()
 
 
 def test_the_fitted_driver_has_the_estimates_and_else_the_usual_values() -> None:
-    fit = fit_of(1)
+    fit = fit_of(1, SHORT)
     for estimate in fit.estimates:
         assert value_of(fit.driver, estimate.name) == estimate.value
     assert value_of(fit.driver, "reliance.reliance") == 0.5
@@ -172,7 +174,7 @@ def test_noise_of_the_torque_sensor_is_found_and_hides_what_moves_the_arms() -> 
 
 
 def test_a_simulators_torque_has_no_noise() -> None:
-    assert fit_of(1).torque_noise == 1e-5
+    assert fit_of(1, SHORT).torque_noise == 1e-5
 
 
 def test_a_recording_that_tells_nothing_of_the_steering_is_refused(
@@ -185,7 +187,7 @@ def test_a_recording_that_tells_nothing_of_the_steering_is_refused(
 
 
 def test_every_interval_holds_its_estimate() -> None:
-    for estimate in fit_of(1).estimates:
+    for estimate in fit_of(1, SHORT).estimates:
         assert estimate.low <= estimate.value <= estimate.high
         assert math.isfinite(estimate.low)
         assert math.isfinite(estimate.high)
@@ -201,9 +203,7 @@ def test_a_shorter_recording_tells_less() -> None:
         assert wide.high - wide.low > 1.1 * (narrow.high - narrow.low)
 
 
-@pytest.mark.slow
 def test_a_short_recording_of_the_model_raises_no_false_alarm() -> None:
-    fit = fit_driver(recorded(1, 2000.0))
+    fit = fit_of(1, SHORT)
     assert fit.whiteness < fit.white_limit
     assert 0.06 < fit.white_limit < 0.07
-    assert fit_of(1).white_limit == WHITE

@@ -74,7 +74,9 @@ def in_python(entry: Any) -> Any:
     return entry.py_func
 
 
-@pytest.mark.parametrize("absent", [(), ("head_yaw", "yaw_angle")])
+@pytest.mark.parametrize(
+    "absent", [pytest.param((), marks=pytest.mark.slow), ("head_yaw", "yaw_angle")]
+)
 def test_the_bookkeeping_in_plain_python_gives_the_same_verdicts(
     absent: tuple[str, ...], monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -30,10 +30,10 @@ from costeer.intention.wavefront import (
 )
 from tests.intention.lively import lively_weights, needy_weights, signals, windows
 
-SIZES = (3, 8, 16, 33, 64)
 
-
-@pytest.mark.parametrize("hidden", SIZES)
+@pytest.mark.parametrize(
+    "hidden", [3, 16, *(pytest.param(n, marks=pytest.mark.slow) for n in (8, 33, 64))]
+)
 def test_each_verdict_equals_a_fresh_run_over_its_window(hidden: int) -> None:
     weights, features = lively_weights(hidden), signals(500)
     verdicts = crossing_probabilities(weights, features)

@@ -100,6 +100,9 @@ SETUP = TrialSetup(
     length=100.0,
 )
 PLACE = f"{__file__}:CALM"
+ENGINES = pytest.mark.parametrize(
+    "engine", [pytest.param("numba", marks=pytest.mark.slow), "python"]
+)
 
 
 @cache
@@ -111,9 +114,7 @@ def as_bytes(record: TrialRecord) -> dict[str, bytes]:
     return {name: np.ma.filled(v, -9).tobytes() for name, v in record.columns.items()}
 
 
-@pytest.mark.parametrize(
-    "engine", [pytest.param("numba", marks=pytest.mark.slow), "python"]
-)
+@ENGINES
 def test_a_method_that_asks_for_nothing_gives_nothing(engine: str) -> None:
     columns = trial(CALM, engine).columns
     assert not columns["applied_torque"].any()
@@ -129,6 +130,7 @@ def test_what_a_method_does_not_compute_is_missing_in_its_record() -> None:
     assert np.ma.getmaskarray(columns["target_lane"]).all()
 
 
+@pytest.mark.slow
 def test_the_method_closes_the_loop_of_a_person() -> None:
     parameters = loop_parameters(SETUP._replace(method=CALM, plant_steps=16))
     memory = person_memory(CALM, parameters)
@@ -180,6 +182,7 @@ def test_two_methods_of_one_name_are_refused(
         loop_parameters(SETUP._replace(method=other))
 
 
+@ENGINES
 @pytest.mark.parametrize(
     ("torque", "fault", "command"),
     [
@@ -192,9 +195,9 @@ def test_two_methods_of_one_name_are_refused(
     ],
 )
 def test_a_torque_that_cannot_be_given_is_contained_and_told(
-    torque: float, fault: float, command: float
+    torque: float, fault: float, command: float, engine: str
 ) -> None:
-    record = trial(steady(torque))
+    record = trial(steady(torque), engine)
     assert set(record.columns["torque_fault"]) == {fault}
     num_steps = len(record.columns["torque_fault"])
     assert record.metadata["torque_faults"] == (num_steps if fault else 0)

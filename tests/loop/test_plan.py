@@ -24,6 +24,15 @@ from costeer.methods.ibhs import IBHS
 RULES = rules_of(IBHS)
 METHODS_DURATION = 5.0
 WHO = (1, pytest.param(2, marks=pytest.mark.slow))
+FIRST_CHANGE, BOTH_CHANGES = 12.0, 30.0
+"""Until the end of a change [s]."""
+FOLLOWERS = pytest.mark.parametrize(
+    ("participant", "until"),
+    [
+        (1, FIRST_CHANGE),
+        *(pytest.param(n, BOTH_CHANGES, marks=pytest.mark.slow) for n in (1, 2)),
+    ],
+)
 
 
 class Change(NamedTuple):
@@ -72,14 +81,16 @@ def parameters_of(
 
 
 @cache
-def changes(participant: int, follows_plan: float) -> Changes:
-    """Half a minute: over to the other lane and back."""
+def changes(
+    participant: int, follows_plan: float, until: float = BOTH_CHANGES
+) -> Changes:
+    """Half a minute: over to the other lane and back; or less."""
     parameters = parameters_of(participant, follows_plan)
     state = initial_state(RULES, parameters)
     script = Script(INTENTION_SCRIPTED, 3.0, np.zeros(0))
     network = idle_network()
     found = Changes([], [], [])
-    for draws in driver_noise(PILOT_SEED, participant, "pilot", round(30.0 / DT)):
+    for draws in driver_noise(PILOT_SEED, participant, "pilot", round(until / DT)):
         before, noise = state, DriverNoise(*draws.tolist())
         state, sample = tick(RULES, parameters, state, script, network, noise)
         own, system = state.driver.tracking.path, state.control.method.trajectory.path
@@ -108,10 +119,13 @@ def test_every_change_of_a_following_system_lasts_as_the_driver_planned(
     assert all(abs(duration - METHODS_DURATION) > 0.1 for duration in planned)
 
 
-@pytest.mark.parametrize("participant", WHO)
-def test_a_following_system_begins_with_the_driver(participant: int) -> None:
+@FOLLOWERS
+def test_a_following_system_begins_with_the_driver(
+    participant: int, until: float
+) -> None:
     # The trigger takes three positives in a row, the first where steering is due.
-    found = changes(participant, follows_plan=1.0)
+    found = changes(participant, 1.0, until)
+    assert found.system
     for own, system in zip(found.driver, found.system, strict=True):
         assert 0.0 < system.time - own.time <= 3.0 * DT + 1e-9
 
@@ -122,12 +136,15 @@ def positions(path: Quintic, places: NDArray[np.float64]) -> NDArray[np.float64]
     return np.array(found)
 
 
-@pytest.mark.parametrize("participant", WHO)
-def test_paths_of_driver_and_following_system_are_one(participant: int) -> None:
+@FOLLOWERS
+def test_paths_of_driver_and_following_system_are_one(
+    participant: int, until: float
+) -> None:
     # They begin 0.05 s apart at the most and end beside each other by what the
     # driver prefers: at 1.1 m/s of lateral speed that is 6 cm and the bias.
     bias = parameters_of(participant, 1.0).driver.tracking.lane_bias
-    found = changes(participant, follows_plan=1.0)
+    found = changes(participant, 1.0, until)
+    assert found.system
     for own, system in zip(found.driver, found.system, strict=True):
         places = own.path.start + np.linspace(0.0, own.path.length, 50)
         apart = positions(own.path, places) - positions(system.path, places)

@@ -250,6 +250,7 @@ def test_a_car_without_a_law_keeps_its_speed_whatever_is_ahead() -> None:
     assert last[1].velocity == 12.5
 
 
+@pytest.mark.slow
 def test_a_faster_car_overtakes_the_driven_one_and_returns() -> None:
     fast = there(-80.0, velocity=28.0, desired=28.0, follows=1.0, changes=1.0)
     history = drive(fleet_parameters([fast]), 40.0)

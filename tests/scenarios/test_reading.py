@@ -172,7 +172,7 @@ def test_the_inner_lane_of_a_curve_is_what_is_too_tight() -> None:
         b"name: !!int ''\n",
         b"name: !!python/object:os.system x\n",
         b"\xff\xfe\x00",
-        b"[" * 5000,
+        b"[" * 1500,
         b"name: x\nroad: {length: 1" + b"0" * 400 + b"}\n",
         b"name: " + b"x" * 100_000 + b"\n",
     ],
@@ -203,7 +203,7 @@ PIECES = ["name", "road", "at", "radius", "- ", "{", "}", "[", ": ", "\n", "  ",
 PIECES += ["*a", ".nan", "-1", "1e999", "!!set", "~", "'", "|", "9" * 30, "km/h", "#"]
 
 
-@settings(max_examples=300, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@settings(suppress_health_check=[HealthCheck.too_slow])
 @given(st.data())
 def test_damaged_text_is_read_or_refused(data: st.DataObject) -> None:
     text = SOUND
@@ -226,7 +226,6 @@ VALUES = st.one_of(
 )
 
 
-@settings(max_examples=300, deadline=None)
 @given(st.data())
 def test_any_value_at_any_place_is_read_or_refused(data: st.DataObject) -> None:
     content = yaml.safe_load(SOUND)

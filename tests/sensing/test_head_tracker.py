@@ -24,7 +24,7 @@ from costeer.sensing.sensors import (
 DT = 1.0 / 60.0
 SENSORS = SensorParameters()
 AHEAD, TURNED = 0.1, 0.7
-NUM_HEADS = 500
+NUM_HEADS = 2000
 YAWS = st.floats(-1.0, 1.0)
 NORMALS = st.floats(-4.0, 4.0)
 
@@ -56,7 +56,7 @@ def tracked(
 
 @pytest.mark.parametrize("head_yaw", [AHEAD, TURNED])
 def test_a_lost_face_keeps_its_last_angle_and_is_flagged(head_yaw: float) -> None:
-    found = tracked(head_yaw, 60.0)
+    found = tracked(head_yaw, 15.0)
     lost = ~found.valid[1:]
     assert lost.any()
     kept = found.head_yaw[1:] == found.head_yaw[:-1]
@@ -66,7 +66,7 @@ def test_a_lost_face_keeps_its_last_angle_and_is_flagged(head_yaw: float) -> Non
 
 def shares(head_yaw: float, rate: float) -> tuple[float, float, float]:
     """Share of lost samples, what the rates say of it, and its standard error."""
-    seconds = 300.0
+    seconds = 75.0
     found = tracked(head_yaw, seconds)
     lost = ~found.valid[round(5.0 / DT) :]  # settled after many times 0.3 s
     expected = rate * SENSORS.loss_time / (1.0 + rate * SENSORS.loss_time)
@@ -88,13 +88,13 @@ def test_share_of_lost_samples_is_rate_times_time(head_yaw: float, rate: float) 
 
 def test_a_turned_head_is_lost_more_often() -> None:
     ahead, turned = (
-        float(np.mean(~tracked(yaw, 60.0).valid)) for yaw in (AHEAD, TURNED)
+        float(np.mean(~tracked(yaw, 15.0).valid)) for yaw in (AHEAD, TURNED)
     )
     assert turned > 10.0 * ahead > 0.0
 
 
 def test_a_face_is_found_again_after_its_mean_time() -> None:
-    valid = tracked(TURNED, 300.0).valid
+    valid = tracked(TURNED, 75.0).valid
     lost = ~valid
     num_losses = np.count_nonzero(lost[1:] & valid[:-1])
     # An exponential time's mean is known to one over the root of their number.
@@ -106,7 +106,7 @@ def test_a_face_is_found_again_after_its_mean_time() -> None:
 def test_a_face_is_never_lost_at_a_rate_of_zero() -> None:
     perfect = SENSORS._replace(loss_rate=0.0, turned_loss_rate=0.0)
     for yaw in (AHEAD, TURNED):
-        assert tracked(yaw, 60.0, perfect).valid.all()
+        assert tracked(yaw, 15.0, perfect).valid.all()
     assert track_head(
         perfect, initial_tracker(), AHEAD, TrackerNoise(0.0, 0.0), DT
     ).valid

@@ -145,6 +145,7 @@ def test_the_same_record_gives_the_same_bytes(tmp_path: Path) -> None:
     assert b"Created on" not in first.read_bytes()[:128]
 
 
+@pytest.mark.slow
 def test_all_formats_come_into_folders_of_their_own(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

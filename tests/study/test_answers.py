@@ -115,6 +115,7 @@ def test_condition_without_any_answer_to_an_item_is_named() -> None:
     assert ("effort", "all", "manual") in [row[:3] for row in found.dropped]
 
 
+@pytest.mark.slow
 def test_names_of_conditions_may_be_others_and_all_pairs_compared() -> None:
     answers = made_up_answers(5)
     names = {name: str(number) for number, name in enumerate(CONDITION_NAMES)}

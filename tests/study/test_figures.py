@@ -86,6 +86,7 @@ def test_no_text_is_smaller_than_can_be_read(exhibits: list[Exhibit]) -> None:
         assert min(each.get_fontsize() for each in texts(exhibit)) >= SMALL
 
 
+@pytest.mark.slow
 def test_no_text_leaves_its_figure(exhibits: list[Exhibit]) -> None:
     for exhibit in drawn(exhibits):
         assert exhibit.figure is not None

@@ -7,6 +7,7 @@ import shutil
 from pathlib import Path
 
 import pandas as pd
+import pytest
 
 from costeer.methods.conditions import CONDITION_NAMES
 from costeer.pages.tables import Table
@@ -129,6 +130,7 @@ def test_where_triggers_are_not_judged_nothing_is_said(
     assert names == {"manual"}
 
 
+@pytest.mark.slow
 def test_of_a_folder_without_the_file_the_page_claims_nothing(
     study_folder: Path, tmp_path: Path
 ) -> None:
@@ -141,6 +143,7 @@ def test_of_a_folder_without_the_file_the_page_claims_nothing(
     assert "trigger-costs" not in [item.name for item in section.items]
 
 
+@pytest.mark.slow
 def test_a_trial_without_a_row_has_no_triggers(
     study_folder: Path, tmp_path: Path
 ) -> None:

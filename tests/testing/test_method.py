@@ -69,6 +69,7 @@ def test_a_method_that_is_not_compiled_is_refused_by_numba() -> None:
         check_method(rival(rivals.damping), jax=False)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "name", ["ibhs", pytest.param("manual", marks=pytest.mark.slow)]
 )

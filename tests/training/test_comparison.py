@@ -211,6 +211,7 @@ def test_ablations_take_signals_away_in_turn() -> None:
     assert found.judged[-1].differences["pr_auc"].verdict == "worse"
 
 
+@pytest.mark.slow
 def test_what_is_lacking_anyway_is_not_taken_away_twice() -> None:
     blind = [lacking(r, ("head_yaw",)) for r in RECORDINGS]
     found = ablations(COIN, blind, PARAMETERS)

@@ -97,6 +97,7 @@ def learned() -> Fit:
     return fit(data, scale, [drive(20)], hidden=8, seed=1, parameters=TINY)
 
 
+@pytest.mark.slow
 def test_a_separable_problem_is_learned(learned: Fit) -> None:
     # The edge 3 s before a crossing is a matter of tenths of a second; 120 steps do not
     # learn those. Blind guesses have the prevalence, 0.13, as their area.
@@ -104,6 +105,7 @@ def test_a_separable_problem_is_learned(learned: Fit) -> None:
     assert hidden_size(learned.weights) == 8
 
 
+@pytest.mark.slow
 def test_the_curve_holds_each_look_and_the_best_is_kept(learned: Fit) -> None:
     assert [point.step for point in learned.curve] == [60, 120]
     lowest = min(point.validation_log_loss for point in learned.curve)
@@ -120,6 +122,7 @@ def test_shuffled_labels_teach_nothing() -> None:
     assert area(fitted.weights) < 0.5
 
 
+@pytest.mark.slow
 def test_a_network_that_saw_all_signals_needs_them(learned: Fit) -> None:
     assert not learned.weights.dispensable.any()
     assert np.isnan(

@@ -155,6 +155,7 @@ def test_a_record_without_lane_positions_has_nothing() -> None:
     assert np.isnan(lane_hold(record_of(np.full(600, -3.5)))[:4]).all()
 
 
+@pytest.mark.slow
 def test_manual_departures_of_a_dozen_are_few() -> None:
     found = summarise(dozen())
     # 96 km: 0.02 per km would be two; six would be a chance of 1 %.

@@ -64,6 +64,7 @@ def test_200_drivers_whom_nobody_tuned_meet_the_target(target: object) -> None:
     assert found.met, f"{found.value} is not in the human range"
 
 
+@pytest.mark.slow
 def test_nearly_all_planned_lane_changes_are_achieved() -> None:
     dozen = driving(12)
     assert dozen.planned_changes == 12 * PLANNED_CHANGES

@@ -83,6 +83,7 @@ class Leaving(Watching):
         return PULL if text in self.lasted else 0.0
 
 
+@pytest.mark.slow
 def test_a_weight_that_stays_is_let_go_in_the_end() -> None:
     user = Leaving()
     assert weighed(user) == pytest.approx(PULL, rel=0.03)
@@ -123,6 +124,7 @@ def test_a_weight_that_was_not_free_all_the_time_is_refused() -> None:
     assert user.lasted[TAKE_OFF] > TAKES
 
 
+@pytest.mark.slow
 def test_a_wheel_that_still_turns_is_waited_for() -> None:
     user = Watching()
     assert weighed(user, rate=2.0) == pytest.approx(PULL, rel=0.03)

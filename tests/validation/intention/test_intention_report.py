@@ -119,6 +119,7 @@ def test_tables_hold_the_numbers_of_the_json(folder: Path) -> None:
     assert len(own_points) == len(curve["threshold"])
 
 
+@pytest.mark.slow
 def test_the_same_judgement_gives_the_same_bytes(folder: Path, tmp_path: Path) -> None:
     prepare(tmp_path / "again")
     write_report(tmp_path / "again", full())
