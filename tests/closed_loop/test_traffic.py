@@ -35,6 +35,7 @@ from costeer.scenarios.definition import (
     Stream,
     When,
 )
+from costeer.scenarios.reading import scenario_named
 from tests.closed_loop.test_mirror import mirrored_noise, mirrored_parameters
 
 SCRIPT = Script(INTENTION_SCRIPTED, 3.0, np.array([4.0]))
@@ -277,6 +278,8 @@ def test_cars_that_fall_out_come_in_again_and_none_is_lost(name: str) -> None:
     again = np.count_nonzero(np.abs(np.diff(place, axis=0)) > 100.0)
     print(f"{name}: {again} came in again, farthest {np.abs(away).max():.0f} m")
     assert again > 0
+    # Nobody waits outside: the stream stays as dense as it began.
+    assert np.abs(away).max() < scenario_named(name).stream.reach + 1.0
     lateral = of_cars(record, "lateral")
     lanes = {"dense-traffic": 2, "three-lanes": 3}[name]
     assert lateral.min() >= -3.5 * (lanes - 1) - 1e-9

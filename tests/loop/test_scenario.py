@@ -17,7 +17,10 @@ from costeer.loop.scenario import (
     loop_parameters,
     trial_driver,
 )
+from costeer.loop.trial import simulate_trial
+from costeer.plant.fleet import KINDS, CarKind, FleetParameters
 from costeer.plant.parameters import CARS
+from costeer.scenarios.definition import Actor, Bent, Order, Road, Scenario, When
 
 STRONG = TrialSetup(condition="strong-normal")
 OWN = {"condition": "own", "strength_factor": 0.7}
@@ -143,3 +146,74 @@ def test_the_share_of_given_up_lane_changes_reaches_the_decision_alone() -> None
     assert drawn.decision.abandoned_share == 0.0
     faithful = fickle.decision._replace(abandoned_share=0.0)
     assert fickle._replace(decision=faithful) == drawn
+
+
+CURVED = Scenario(
+    "bends",
+    speed="50 km/h",
+    road=Road(length=900.0, stations=(Bent(0.0, 120.0),)),
+)
+
+
+def test_a_speed_too_fast_for_the_curves_is_refused_in_python_too() -> None:
+    with pytest.raises(ValueError, match=r"curve of 120 m at 0 m is too tight") as told:
+        simulate_trial(TrialSetup(scenario=CURVED, speed=22.0))
+    assert "scenario bends" in str(told.value)
+    assert "smaller speed" in str(told.value)
+    assert loop_parameters(TrialSetup(scenario=CURVED, speed=15.0)).start.speed == 15.0
+
+
+def kinds_of(fleet: FleetParameters) -> list[CarKind]:
+    places = range(int(fleet.num_places))
+    return [KINDS.read(fleet.kinds, place) for place in places]
+
+
+OBSTACLE = Scenario(
+    "beside",
+    road=Road(length=300.0),
+    actors=(
+        Actor("box", "obstacle", 0, 1.3, appears=When(place=150.0), headway=0.6),
+    ),
+)
+"""Its left side is 1.325 m to the right of the left lane's centre."""
+
+
+@pytest.mark.parametrize(("width", "hits"), [(1.8, False), (2.9, True)])
+def test_others_meet_the_car_at_the_size_that_is_set(width: float, hits: bool) -> None:
+    setup = TrialSetup(
+        driver="hands-off",
+        condition="manual",
+        intention="off",
+        length=300.0,
+        events=False,
+        scenario=OBSTACLE,
+        parameters=(("car.width", width), ("car.length", 6.0)),
+    )
+    ego = kinds_of(loop_parameters(setup).fleet)[0]
+    assert (ego.length, ego.width) == (6.0, width)
+    record = simulate_trial(setup)
+    assert record.metadata["outcome"] == ("collision" if hits else "arrived")
+
+
+def test_others_drive_in_the_lanes_that_are_set() -> None:
+    setup = TrialSetup(scenario=OBSTACLE, parameters=(("road.lane_width", 4.0),))
+    assert kinds_of(loop_parameters(setup).fleet)[1].lateral == pytest.approx(-2.7)
+
+
+def test_a_lane_that_an_actor_needs_cannot_be_set_away() -> None:
+    order = Order(When(time=3.0), lane=2)
+    three = Scenario(
+        "three", road=Road(lanes=3), actors=(Actor("a", at=50.0, orders=(order,)),)
+    )
+    setup = TrialSetup(scenario=three, parameters=(("road.num_lanes", 2.0),))
+    with pytest.raises(ValueError, match=r"road.num_lanes is 2; a of scenario three"):
+        loop_parameters(setup)
+
+
+def test_a_record_says_what_the_other_cars_are() -> None:
+    cars = simulate_trial(
+        TrialSetup(
+            condition="manual", intention="off", length=300.0, scenario=OBSTACLE
+        )
+    ).metadata["other_cars"]
+    assert cars == [{"kind": "obstacle", "length": 1.0, "width": 1.75}]

@@ -314,6 +314,44 @@ def test_a_car_of_a_stream_comes_in_again_at_the_other_end() -> None:
     assert (np.diff(away[:, 1]) < 0.0).all()  # who is no stream stays behind
 
 
+def ring(speeds: list[float], reach: float) -> FleetParameters:
+    """Cars of a stream in one lane, evenly over twice the reach."""
+    step = 2.0 * reach / len(speeds)
+    return fleet_parameters(
+        [
+            there(step * (k + 0.5) - reach, 0.0, velocity=v, streams=1.0, follows=1.0)
+            for k, v in enumerate(speeds)
+        ],
+        reach=reach,
+    )
+
+
+def test_a_stream_does_not_thin_out() -> None:
+    # 40 m to each car: less than following keeps free to both sides of a newcomer.
+    history = drive(ring([24.0, 17.0, 23.0, 18.0, 22.0], reach=100.0), 40.0)
+    away = np.array(
+        [[c.position - cars[0].position for c in cars[1:]] for cars in history]
+    )
+    assert np.abs(away).max() < 101.5
+    assert np.count_nonzero(np.abs(np.diff(away, axis=0)) > 150.0) >= 3
+    # Each follows the next one, around the ring: nobody ends up in another.
+    order = np.sort(away, axis=1)
+    gaps = np.diff(np.concatenate([order, order[:, :1] + 200.0], axis=1), axis=1)
+    assert gaps.min() > 4.5 + 2.0
+
+
+def test_cars_of_a_stream_see_each_other_across_its_ends() -> None:
+    parameters = ring([20.0, 20.0], reach=100.0)
+    fleet = placed(Car(1.0, -90.0, 0.0, 21.0), Car(1.0, 95.0, 0.0, 19.0))
+    seen = outlook(parameters, fleet, Spot(2, 95.0, 0.0, 0.9))
+    assert seen.ahead.gap == pytest.approx(200.0 - 185.0 - 4.5)
+    assert seen.ahead.velocity == 21.0
+    # The driven car is in no stream, and is not seen around the ring.
+    assert seen.behind.gap == pytest.approx(95.0 - 4.5)
+    own = outlook(parameters, fleet, Spot(0, 0.0, 0.0, 0.9))
+    assert own.behind.gap == pytest.approx(90.0 - 4.5)
+
+
 def test_a_car_of_a_stream_waits_while_another_is_where_it_would_come_in() -> None:
     slow = there(-40.0, 0.0, velocity=10.0, streams=1.0, follows=1.0)
     there_already = there(50.0, 0.0, velocity=EGO_SPEED)

@@ -7,7 +7,13 @@ from typing import Any
 import numpy as np
 import pytest
 
-from costeer.records.contradictions import contradictions, joined, unwrapped
+from costeer.records.contradictions import (
+    Lanes,
+    contradictions,
+    joined,
+    lanes_of,
+    unwrapped,
+)
 from tests.training.synthetic import columns as made
 
 
@@ -86,6 +92,59 @@ def test_a_position_from_the_lane_driven_in_is_noticed_and_joined() -> None:
 def test_a_lane_that_the_position_contradicts_is_noticed() -> None:
     found = contradictions(drive(lane=lambda lane: 1 - lane))
     assert any("lane and lateral_position contradict" in note for note in found)
+
+
+THREE = Lanes(width=3.0, count=3)
+
+
+def on_three_lanes() -> dict[str, np.ndarray]:
+    """The drive scaled to lanes of 3 m: from the middle lane to the right and back."""
+    columns = drive(lateral_position=lambda y: y * 3.0 / 3.5 - 3.0)
+    columns["yaw_angle"] = columns["yaw_angle"] * 3.0 / 3.5
+    for name in ("yaw_rate", "steering_wheel_angle", "steering_wheel_rate"):
+        columns[name] = columns[name] * 3.0 / 3.5
+    columns["lane"] = (columns["lateral_position"] > -4.5).astype(np.int8)
+    return columns
+
+
+def test_lanes_of_another_road_contradict_nothing() -> None:
+    columns = on_three_lanes()
+    assert set(columns["lane"]) == {0, 1}
+    assert contradictions(columns, THREE) == []
+    assert contradictions(columns)  # on the paper's road they would
+    (note,) = contradictions(columns | {"lane": columns["lane"] + 1}, THREE)
+    assert "0 right, 2 left" in note
+
+
+def test_a_position_is_joined_over_the_lanes_of_its_road() -> None:
+    columns = on_three_lanes()
+    whole = columns["lateral_position"]
+    own = whole + np.where(whole > -4.5, 3.0, 6.0)
+    (note,) = contradictions(columns | {"lateral_position": own}, THREE)
+    assert "jumps by 2.9" in note
+    again = joined(columns | {"lateral_position": own}, THREE)["lateral_position"]
+    np.testing.assert_allclose(again, whole, atol=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("about", "lanes"),
+    [
+        ({}, Lanes()),
+        ({"scenario": {"road": {"lanes": 4, "lane_width": 3.2}}}, Lanes(3.2, 4)),
+        ({"configuration": {"road": {"num_lanes": 3.0}}}, Lanes(3.5, 3)),
+        (
+            {
+                "scenario": {"road": {"lanes": 4, "lane_width": 3.2}},
+                "configuration": {"road": {"num_lanes": 4.0, "lane_width": 3.0}},
+            },
+            Lanes(3.0, 4),
+        ),
+        ({"scenario": {"road": {"lanes": "many", "lane_width": -1}}}, Lanes()),
+        ({"scenario": 7, "configuration": [1]}, Lanes()),
+    ],
+)
+def test_a_record_says_its_lanes(about: dict[str, Any], lanes: Lanes) -> None:
+    assert lanes_of(about) == lanes
 
 
 def test_a_yaw_from_0_to_2_pi_is_unwrapped() -> None:

@@ -100,6 +100,15 @@ def test_lengths_of_the_other_cars_follow_from_the_scenario() -> None:
     assert headway == pytest.approx(expected)
 
 
+def test_lengths_are_those_that_the_record_tells() -> None:
+    world = WORLD._replace(actors=(Actor("a", "truck", at=50.0),))
+    trial = on(world, straight())
+    told = [{"kind": "car", "length": 5.5, "width": 2.0}, {"length": "long"}, None]
+    about = dict(trial.metadata) | {"other_cars": told}
+    lengths = surroundings(trial._replace(metadata=about)).lengths
+    assert lengths.tolist() == [5.5, 4.5, 4.5]
+
+
 def test_without_other_cars_their_measures_are_empty() -> None:
     measured = found(on(WORLD, changing([(20.0, -1)])))
     names = ("time_to_collision_minimum", "time_headway_mean", "time_gap_minimum")

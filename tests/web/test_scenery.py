@@ -28,7 +28,10 @@ WINDING = Scenario(
         Actor("crate", kind="obstacle", lane=1, at=800.0),
         Actor("lorry", kind="truck", lane=0, at=300.0, speed="20 m/s", length=9.0),
     ),
-    events=(Event("lane-change", 500.0, 200.0, side="right"),),
+    events=(
+        Event("lane-change", 500.0, 200.0, side="right"),
+        Event("gust", 900.0, 50.0, force=-800.0),
+    ),
     zones=(Zone("bend", 200.0, 300.0),),
     after_collision="restart",
 )
@@ -54,7 +57,10 @@ def test_road_with_everything_is_told_in_numbers() -> None:
             [200.0, pytest.approx(0.00125)],
             [300.0, pytest.approx(-0.0025)],
         ],
-        "events": [["lane-change", 500.0, 700.0, "right"]],
+        "events": [
+            ["lane-change", 500.0, 700.0, "right"],
+            ["gust", 900.0, 950.0, "right"],
+        ],
         "zones": [["bend", 200.0, 300.0]],
     }
 

@@ -79,6 +79,7 @@ def show_fit(
 def _recording(path: Path, told: Told) -> tuple[TrialRecord, list[str]]:
     """The recording under costeer's names, and what was assumed of it."""
     from costeer.records.adaptation import adapted, cleaned
+    from costeer.records.contradictions import lanes_of
     from costeer.records.record import read_noted
 
     way = way_of(told)
@@ -88,7 +89,8 @@ def _recording(path: Path, told: Told) -> tuple[TrialRecord, list[str]]:
     except ValueError as error:
         raise ValueError(f"{path}: {error}") from error
     if "time" in columns:
-        columns, dropped = cleaned(columns, way.adaptation)
+        lanes = lanes_of(record.metadata)
+        columns, dropped = cleaned(columns, way.adaptation, lanes)
         renamed += dropped
     return record._replace(columns=columns), [*notes, *renamed]
 

@@ -41,6 +41,7 @@ def summary_rows(record: TrialRecord, measures: Row) -> list[tuple[str, str, str
         return number(scale * max_abs(columns[name]), 2)
 
     return [
+        *_ending(record.metadata),
         ("duration", number(measures["duration"], 1), "s"),
         ("distance", number(measures["distance"], 0), "m"),
         ("mean speed", number(_kmh(measures["mean_speed"]), 1), "km/h"),
@@ -58,6 +59,20 @@ def summary_rows(record: TrialRecord, measures: Row) -> list[tuple[str, str, str
         ("inconsistencies", number(measures["num_inconsistencies"], 0), ""),
         *_faults(record.metadata),
     ]
+
+
+_ENDINGS = {
+    "collision": "collision",
+    "stopped": "stopped for good",
+    "out of time": "out of time",
+}
+"""What is said of a trial that did not arrive."""
+
+
+def _ending(about: Mapping[str, object]) -> list[tuple[str, str, str]]:
+    """A row for a trial that did not arrive at the end of its course."""
+    ending = _ENDINGS.get(str(about.get("outcome")))
+    return [("ended by", ending, "")] if ending else []
 
 
 def _kmh(speed: object) -> float:

@@ -25,7 +25,7 @@ from costeer.plant.parameters import (
 from costeer.plant.road import lane_at, lane_centre
 from costeer.records.checks import check_time, converted
 from costeer.records.columns import COLUMNS_BY_NAME, TrialRecord
-from costeer.records.contradictions import contradictions, unwrapped
+from costeer.records.contradictions import contradictions, lanes_of, unwrapped
 from costeer.records.plausible import suspicions
 
 Record = TypeVar("Record")
@@ -93,7 +93,7 @@ def drive_of(record: TrialRecord, car: str | CarParameters | None = None) -> Dri
 def doubts_of(record: TrialRecord) -> list[str]:
     """What looks wrong in a recording but does not forbid a fit."""
     columns, told = unwrapped(record.columns)
-    return [*told, *contradictions(columns)]
+    return [*told, *contradictions(columns, lanes_of(record.metadata))]
 
 
 def _column(record: TrialRecord, name: str) -> NDArray[Any]:  # Any: of its own kind

@@ -19,6 +19,7 @@ from costeer.base.array import Real
 from costeer.base.extras import install_command
 from costeer.drivers.interface import AnyDriver, DriverNoise
 from costeer.drivers.population import VIRTUAL
+from costeer.loop.endings import stopped_rows
 from costeer.loop.parameters import LoopParameters
 from costeer.loop.rows import rules_of, writer_of
 from costeer.loop.step import LoopState, Rules, initial_state
@@ -163,9 +164,10 @@ _CONTACT = ROW_COLUMNS.index("contact")
 def _until_the_end(
     positions: NDArray[np.float64], rows: NDArray[np.float64], length: Real
 ) -> NDArray[np.float64]:
-    """The rows up to the step that reached the end of the road, or a collision."""
-    arrived = np.flatnonzero((positions >= length) | (rows[:, _CONTACT] >= BARRIER))
-    return rows[: arrived[0] + 1] if arrived.size else rows
+    """The rows up to the end of the road, a collision, or a car that stands for good."""
+    ends = (positions >= length) | (rows[:, _CONTACT] >= BARRIER) | stopped_rows(rows)
+    last = np.flatnonzero(ends)
+    return rows[: last[0] + 1] if last.size else rows
 
 
 def jax_rollout(

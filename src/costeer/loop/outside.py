@@ -24,6 +24,7 @@ from costeer.intention.features import (
 from costeer.intention.predictors.chosen import Judge, chosen_predictor
 from costeer.intention.predictors.interface import Predictor
 from costeer.intention.predictors.registry import PREDICTORS, predictor
+from costeer.loop.endings import has_stopped, still
 from costeer.loop.rollout import Advance
 from costeer.loop.tick import INTENTION_GIVEN, Script
 from costeer.plant.parameters import RoadParameters
@@ -38,6 +39,7 @@ _HEAD = FEATURES.index("head_yaw")
 _SEEN = ROW_COLUMNS.index("head_yaw_valid")
 _LANE = ROW_COLUMNS.index("lane")
 _PLACE = ROW_COLUMNS.index("longitudinal_position")
+_SPEED = ROW_COLUMNS.index("longitudinal_velocity")
 _CONTACT = ROW_COLUMNS.index("contact")
 
 
@@ -157,7 +159,7 @@ def outside_rollout(
         ValueError: If the predictor gives no probability.
     """
     rows = np.empty((len(noise), width))
-    asked = script._replace(intention=INTENTION_GIVEN)
+    asked, standing = script._replace(intention=INTENTION_GIVEN), 0.0
     for k in range(len(noise)):
         now = slice(k, k + 1)
         advance(asked, noise[now], rows[now], keep=False)
@@ -165,6 +167,7 @@ def outside_rollout(
             return rows[:k]
         probability = verdicts.after(sample_of(rows[k], road))
         advance(asked._replace(probability=probability), noise[now], rows[now])
-        if rows[k, _CONTACT] >= BARRIER:
+        standing = still(standing, float(rows[k, _SPEED]))
+        if rows[k, _CONTACT] >= BARRIER or has_stopped(standing):
             return rows[: k + 1]
     return rows

@@ -40,7 +40,7 @@ from costeer.scenarios.mistakes import (
     wrong_in,
 )
 from costeer.scenarios.reading import scenario_named
-from costeer.scenarios.world import Draw, world_of
+from costeer.scenarios.world import Draw, fleet_on, world_of
 
 INTENTIONS = {
     "off": INTENTION_OFF,
@@ -334,6 +334,21 @@ def _check_road(road: RoadParameters) -> None:
         raise ValueError(f"road.num_lanes is {road.num_lanes:g}; give 2 or more")
 
 
+def _check_lanes(road: RoadParameters, scenario: Scenario) -> None:
+    """Refuse a road without a lane that something in the scenario is in.
+
+    Raises:
+        ValueError: Naming it.
+    """
+    for actor in scenario.actors:
+        for lane in (actor.lane, *(each.lane for each in actor.orders)):
+            if lane is not None and lane >= road.num_lanes:
+                raise ValueError(
+                    f"road.num_lanes is {road.num_lanes:g}; {actor.name} of scenario "
+                    f"{scenario.name} is in lane {lane}, give {lane + 1} or more"
+                )
+
+
 def loop_parameters(setup: TrialSetup) -> LoopParameters[Any]:
     """All parameters of a trial.
 
@@ -344,9 +359,10 @@ def loop_parameters(setup: TrialSetup) -> LoopParameters[Any]:
         ValueError: If the setup cannot be run.
     """
     check_setup(setup)
-    scenario = scenario_named(setup.scenario)
+    scenario = scenario_named(setup.scenario, setup.speed)
     car = trial_car(setup)
-    around = world_of(scenario, Draw(setup.seed, setup.participant, setup.length, car))
+    draw = Draw(setup.seed, setup.participant, setup.length, car)
+    around = world_of(scenario, draw)
     world = LoopParameters(
         controller=0.0,
         car=car,
@@ -370,6 +386,13 @@ def loop_parameters(setup: TrialSetup) -> LoopParameters[Any]:
     values = _wrong_values(setup) | dict(setup.parameters)
     parameters = built(world, chosen, condition, values)
     _check_road(parameters.road)
+    _check_lanes(parameters.road, scenario)
+    if (parameters.car, parameters.road) != (car, around.road):
+        draw = draw._replace(car=parameters.car)
+        fleet = fleet_on(scenario, draw, parameters.road)
+        world, parameters = (
+            each._replace(fleet=fleet) for each in (world, parameters)
+        )
     if driven is chosen:
         return parameters
     # Manual driving has no parameters of a method from outside; the names are right.

@@ -19,6 +19,7 @@ from costeer.controller.signals import Request
 from costeer.drivers.interface import DriverNoise
 from costeer.intention.features import IntentionSample, facing
 from costeer.intention.wavefront import WavefrontState, WavefrontWeights, advance
+from costeer.loop.endings import has_stopped, still
 from costeer.loop.events import has_collided
 from costeer.loop.half_step import Sample
 from costeer.loop.parameters import DT, LoopParameters
@@ -162,7 +163,7 @@ def run(
     noise: NDArray[np.float64],
     rows: NDArray[np.float64],
 ) -> tuple[LoopState[S], int]:
-    """Fill `rows` until the road or the noise ends, or the car hits something.
+    """Fill `rows` until road or noise end, the car hits something or stands for good.
 
     Returns the state then, and how many rows were filled.
 
@@ -175,12 +176,14 @@ def run(
         noise: Random numbers, shape `(time, draw)`.
         rows: Filled in the order of `ROW_COLUMNS`, shape `(time, column)`.
     """
+    standing = 0.0
     for k in range(len(noise)):
         drawn = unpack(_NOISE, noise[k])
         state, sample = tick(loop.rules, parameters, state, script, network, drawn)
         loop.fill(rows[k], sample)
         write_cars(rows[k], num_cars(parameters.fleet), sample.events.fleet)
-        if has_collided(sample.events):
+        standing = still(standing, sample.measurement.longitudinal_velocity)
+        if has_collided(sample.events) or has_stopped(standing):
             return state, k + 1
         if state.world.vehicle.longitudinal_position >= parameters.road.length:
             return state, k + 1

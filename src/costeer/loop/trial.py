@@ -28,6 +28,7 @@ from costeer.intention.wavefront import (
 )
 from costeer.intention.wavefront import initial_state as network_memory
 from costeer.intention.weights import IntentionNetwork, load_weights
+from costeer.loop.endings import outcome_of
 from costeer.loop.noise import driver_noise
 from costeer.loop.outside import Verdicts, outside_rollout
 from costeer.loop.parameters import DT, LoopParameters
@@ -51,6 +52,7 @@ from costeer.records.columns import TrialRecord, with_method_columns
 from costeer.records.row import ROW_COLUMNS, record_columns
 from costeer.scenarios import mistakes
 from costeer.scenarios.reading import scenario_named
+from costeer.scenarios.world import sizes_of
 
 SLOWEST_SHARE = 0.5
 """A trial ends at the latest when a car at this share of its speed would arrive."""
@@ -166,6 +168,7 @@ def simulate_trial(setup: TrialSetup, engine: str = "numba") -> TrialRecord:
     columns = record_columns(rows, is_assisted(setup), with_method_columns(added))
     about = trial_metadata(setup, parameters, predictor)
     about["torque_faults"] = int(np.count_nonzero(columns["torque_fault"]))
+    about["outcome"] = outcome_of(rows, setup.length)
     return TrialRecord(about, columns, added)
 
 
@@ -221,6 +224,7 @@ def trial_metadata(
             }
             for each in trial_mistakes(setup)
         ],
+        "other_cars": sizes_of(scenario_named(setup.scenario), parameters.fleet),
         "driver": _driver_text(setup, driver),
         "driver_source_hash": driver_sources(driver),
         "predictor": None if predictor is None else predictor.name,

@@ -146,8 +146,8 @@ class FleetParameters(NamedTuple):
 
     Attributes:
         num_places: Places in use, the driven car's with them [-]. Source: the scenario.
-        range: Cars of a stream that are so far away come in again at the other end
-            [m]. Source: the scenario.
+        range: Cars of a stream that are so far away come in again at the other end:
+            half of a ring [m]. Source: the scenario.
         kinds: A `CarKind` in each row, flat [SI units]. Source: the scenario.
     """
 

@@ -33,7 +33,7 @@ from costeer.plant.following import (
     advantage,
     following_acceleration,
 )
-from costeer.plant.outlook import Spot, lane_outlook, outlook
+from costeer.plant.outlook import Spot, is_on_ring, lane_outlook, outlook
 from costeer.plant.parameters import RoadParameters
 from costeer.plant.road import cruising_lane, lane_centre
 
@@ -218,9 +218,23 @@ def smooth(share: Real) -> Real:
 
 
 @compiled
-def other_end(reach: Real, car: Car, ego: Car) -> Real:
-    """Where a car that has fallen out of the stream comes in again [m]."""
-    return ego.position + xp.select(car.position < ego.position, reach, -reach)
+def is_away(reach: Real, position: Real, ego: Car) -> Flag:
+    """Whether a place is farther from the driven car than a stream reaches [m]."""
+    return xp.absolute(position - ego.position) > reach
+
+
+@compiled
+def other_end(reach: Real, position: Real, ego: Car) -> Real:
+    """Where a car that has fallen out of the stream comes in again [m].
+
+    A stream is a ring: cars see each other across its ends (`outlook.around_ring`),
+    so who comes in has the cars ahead and behind that it had before. Who could not
+    come in at once, and is out of the ring, does so at its end.
+    """
+    side = xp.select(position < ego.position, 1.0, -1.0)
+    on_ring = is_on_ring(reach, position, ego.position)
+    around = position + 2.0 * reach * side
+    return xp.select(on_ring, around, ego.position + reach * side)
 
 
 @compiled
@@ -235,17 +249,16 @@ def driven_on(
         world: Road, law, time and step.
         car: Before.
         ego: The driven car.
-        free: Whether there is room where it would come in again.
+        free: Whether no obstacle or other stranger is where it would come in again.
     """
     dt = world.dt
     velocity = xp.maximum(car.velocity + car.acceleration * dt, 0.0)
     moved = car.position + (car.velocity + velocity) / 2.0 * dt
-    away = xp.absolute(moved - ego.position) > reach
-    again = kind.streams * xp.select(away & free, 1.0, 0.0) > 0.5
+    again = (kind.streams > 0.5) & is_away(reach, moved, ego) & free
     share = smooth(car.changing / world.law.change_duration)
     centre = lane_centre(world.road, car.lane) + kind.offset
     return car._replace(
-        position=xp.select(again, other_end(reach, car, ego), moved),
+        position=xp.select(again, other_end(reach, moved, ego), moved),
         velocity=velocity,
         changing=car.changing + dt,
         lateral=car.origin + (centre - car.origin) * share,
@@ -258,15 +271,18 @@ def has_room_again(
 ) -> Flag:
     """Whether a car of a stream can come in again at the other end.
 
-    It is not about to change lanes, and nobody there would have to brake for it.
+    Nobody there would have to brake for it who has not been beside it on the ring.
+    Who is out of the ring is not about to change lanes, and comes in one at a time.
     """
     ego: Car = _read_car(fleet.cars, 0)
+    on_ring = is_on_ring(parameters.range, car.position, ego.position)
     there = Spot(
         place=index,
-        position=other_end(parameters.range, car, ego),
-        lateral=lane_centre(world.road, car.lane),
+        position=other_end(parameters.range, car.position, ego),
+        lateral=car.lateral,
         half_width=_LANE_REACH,
         lane=car.lane,
+        strangers=xp.select(on_ring, 1.0, 0.0),
     )
     seen, law = outlook(parameters, fleet, there), world.law
     ahead = law.standstill_gap + law.headway * xp.maximum(
@@ -276,8 +292,8 @@ def has_room_again(
         seen.behind.velocity, 2.0 * seen.behind.velocity - car.velocity
     )
     room = (seen.ahead.gap > ahead) & (seen.behind.gap > behind)
-    is_next = has_turn(parameters, world, index)
-    return room & is_next & (car.changing > law.change_duration)
+    may = has_turn(parameters, world, index) & (car.changing > law.change_duration)
+    return room & (on_ring | may)
 
 
 @compiled
@@ -301,7 +317,9 @@ def moved_car(
         second=second,
         third=third,
     )
-    free = has_room_again(parameters, fleet, world, car, index)
+    leaves = (kind.streams > 0.5) & is_away(parameters.range, car.position, ego)
+    given = parameters, fleet, world, car, index
+    free = xp.when(leaves, has_room_again, given, False)
     on = driven_on(kind, parameters.range, world, car, ego, free)
     return xp.select(car.present > 0.5, on, car)
 

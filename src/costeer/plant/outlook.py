@@ -38,6 +38,7 @@ class Spot(NamedTuple):
         lateral: Of the line along which it looks [m].
         half_width: Cars that reach into a band so wide beside it are in the way [m].
         lane: Cars on their way to it are in the way too; NaN: none [-].
+        strangers: 1 to see only cars that are in no stream [-].
     """
 
     place: int
@@ -45,6 +46,29 @@ class Spot(NamedTuple):
     lateral: Real
     half_width: Real
     lane: Real = math.nan
+    strangers: Real = 0.0
+
+
+RING_ENDS = 1.05
+"""Cars farther away than the stream's reach times this are out of its ring [-]. Source:
+assumed, so that who cannot come in at once hinders nobody at the other end."""
+
+
+@compiled
+def is_on_ring(reach: Real, position: Real, ego: Real) -> Flag:
+    """Whether a car of a stream is near enough to the driven one to be on its ring."""
+    return xp.absolute(position - ego) <= RING_ENDS * reach
+
+
+@compiled
+def around_ring(distance: Real, reach: Real) -> Real:
+    """The nearest distance between two cars of a stream, which is a ring [m].
+
+    Args:
+        distance: From one to the other along the road [m].
+        reach: Half of the ring [m].
+    """
+    return distance - 2.0 * reach * xp.floor(distance / (2.0 * reach) + 0.5)
 
 
 def outlook(parameters: FleetParameters, fleet: Fleet, spot: Spot) -> LaneOutlook:
@@ -67,7 +91,14 @@ def outlook(parameters: FleetParameters, fleet: Fleet, spot: Spot) -> LaneOutloo
     near = beside < spot.half_width + kinds["width"] / 2.0
     near = near | (cars["lane"] == spot.lane)
     seen = (cars["present"] > 0.5) & near & others
-    distance = cars["position"] - spot.position
+    ego, reach = cars["position"][0], parameters.range
+    streams = (kinds["streams"] > 0.5) & (kinds["streams"][spot.place] > 0.5)
+    streams = streams & is_on_ring(reach, cars["position"], ego)
+    streams = streams & is_on_ring(reach, spot.position, ego)
+    seen = seen & ~(streams & (spot.strangers > 0.5))
+    straight = cars["position"] - spot.position
+    ring = around_ring(straight, reach)
+    distance = numpy.where(streams, ring, straight)
     half = (kinds["length"] + kinds["length"][spot.place]) / 2.0
     ahead = numpy.where(seen & (distance >= 0.0), distance - half, LONGEST_GAP)
     behind = numpy.where(seen & (distance < 0.0), -distance - half, LONGEST_GAP)
@@ -99,17 +130,23 @@ def _nearest(cars: dict[str, Any], gaps: Any) -> Ahead:
 def _outlook(parameters: Any, fleet: Any, spot: Any) -> Any:
     def implementation(parameters: Any, fleet: Any, spot: Any) -> Any:
         ahead, behind = Ahead(), Ahead()
-        own = _read_kind(parameters.kinds, spot.place).length
+        looks, reach = _read_kind(parameters.kinds, spot.place), parameters.range
+        ego = _read_car(fleet.cars, 0).position
+        streams = looks.streams > 0.5 and is_on_ring(reach, spot.position, ego)
         for other in range(int(parameters.num_places)):
             car = _read_car(fleet.cars, other)
             kind = _read_kind(parameters.kinds, other)
             if other == spot.place or car.present < 0.5:
                 continue
-            reach = spot.half_width + kind.width / 2.0
-            if abs(car.lateral - spot.lateral) >= reach and car.lane != spot.lane:
+            near = spot.half_width + kind.width / 2.0
+            if abs(car.lateral - spot.lateral) >= near and car.lane != spot.lane:
                 continue
             distance = car.position - spot.position
-            gap = abs(distance) - (kind.length + own) / 2.0
+            if streams and kind.streams > 0.5 and is_on_ring(reach, car.position, ego):
+                if spot.strangers > 0.5:
+                    continue
+                distance = around_ring(distance, reach)
+            gap = abs(distance) - (kind.length + looks.length) / 2.0
             seen = Ahead(gap, car.velocity, car.desired, car.lateral, kind.width)
             if distance >= 0.0:
                 ahead = seen if seen.gap < ahead.gap else ahead

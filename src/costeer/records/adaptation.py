@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from costeer.records.columns import COLUMNS_BY_NAME
-from costeer.records.contradictions import joined
+from costeer.records.contradictions import PAPERS, Lanes, joined
 from costeer.records.times import seconds, without_repeated
 
 Columns = Mapping[str, NDArray[Any]]  # Any: of any type
@@ -74,14 +74,20 @@ def adapted(
 
 
 def cleaned(
-    columns: Columns, adaptation: Adaptation
+    columns: Columns, adaptation: Adaptation, lanes: Lanes = PAPERS
 ) -> tuple[dict[str, NDArray[Any]], list[str]]:
-    """One stretch as the user wants it: without repeated times, lanes joined."""
+    """One stretch as the user wants it: without repeated times, lanes joined.
+
+    Args:
+        columns: Of the stretch, shape `(time,)` each.
+        adaptation: What is wanted.
+        lanes: Of its road.
+    """
     found, told = dict(columns), list[str]()
     if adaptation.drop_repeated:
         found, told = without_repeated(found)
     if adaptation.join_lanes and "lateral_position" in found:
-        found = joined(found)
+        found = joined(found, lanes)
     return found, told
 
 

@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
+import re
+
 from costeer.records.columns import CAR_PREFIX, Column
 
 CAR_SIGNALS = ("position", "lateral", "velocity")
 """What a record says of each other car, in this order."""
+
+CAR_COLUMN = re.compile(rf"{CAR_PREFIX}(\d+)_({'|'.join(CAR_SIGNALS)})")
+"""Name of a column that says where another car is."""
 
 
 def car_columns(num_cars: int) -> tuple[Column, ...]:

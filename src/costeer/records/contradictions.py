@@ -19,7 +19,6 @@ Series = NDArray[np.float64]
 # Any: the element type differs from column to column.
 Columns = Mapping[str, NDArray[Any]]
 
-LANE_WIDTH = 3.5  # [m], of the paper's simulator
 _LAG = 0.5  # [s] over which changes are compared; rounding hardly matters then
 _CORRELATION = 0.5
 _SLOWEST = 1.0  # [m/s]
@@ -27,7 +26,22 @@ _OTHER_SPEEDS = {"km/h": 1.0 / 3.6, "mph": 0.44704}
 _SPEED_TOLERANCE, _SPEED_GAP = 0.08, 1.3
 _DEGREES = (degrees(1.0) / 2.0, degrees(1.0) * 2.0)
 _LARGEST_RATIO = 600.0  # [m]: steering ratio times wheelbase of no vehicle
-_JUMP = LANE_WIDTH / 2.0
+
+
+class Lanes(NamedTuple):
+    """The lanes that a record was driven on; if it does not say, those of the paper.
+
+    Attributes:
+        width: Of each lane [m]. Source: the paper's simulator.
+        count: Of this direction [-]. Source: as above.
+    """
+
+    width: float = 3.5
+    count: int = 2
+
+
+PAPERS = Lanes()
+_WIDEST, _MOST = 20.0, 20  # what is believed of a record
 
 
 class Fit(NamedTuple):
@@ -42,8 +56,37 @@ class Fit(NamedTuple):
     correlation: float
 
 
-def contradictions(columns: Columns) -> list[str]:
-    """What columns say against each other, and how to mend it."""
+def lanes_of(metadata: Mapping[str, object]) -> Lanes:
+    """The lanes of a record's road: as it was driven on, else of its scenario."""
+    configuration, scenario = metadata.get("configuration"), metadata.get("scenario")
+    driven = _road(configuration)
+    said = _road(scenario)
+    width = driven.get("lane_width", said.get("lane_width"))
+    count = driven.get("num_lanes", said.get("lanes"))
+    return Lanes(
+        width=float(width) if _is_within(width, 0.5, _WIDEST) else PAPERS.width,
+        count=int(count) if _is_within(count, 1.0, _MOST) else PAPERS.count,
+    )
+
+
+# Any, in these two: a part of a description.
+def _road(told: Any) -> Mapping[str, Any]:
+    road = told.get("road") if isinstance(told, Mapping) else None
+    return road if isinstance(road, Mapping) else {}
+
+
+def _is_within(value: Any, low: float, high: float) -> bool:
+    number = isinstance(value, int | float) and not isinstance(value, bool)
+    return bool(number and low <= value <= high)
+
+
+def contradictions(columns: Columns, lanes: Lanes = PAPERS) -> list[str]:
+    """What columns say against each other, and how to mend it.
+
+    Args:
+        columns: Of a record or table, shape `(time,)` each.
+        lanes: Of its road.
+    """
     told = {each.column: each.factor for each in suspicions(columns)}
     known = {
         name: np.ma.filled(values.astype(np.float64), np.nan) * told.get(name, 1.0)
@@ -54,10 +97,10 @@ def contradictions(columns: Columns) -> list[str]:
         return []
     return [
         *_speed(known),
-        *_yaw(known),
+        *_yaw(known, lanes),
         *_steering(known),
         *_rates(known),
-        *_lanes(known),
+        *_lanes(known, lanes),
     ]
 
 
@@ -93,11 +136,11 @@ def _speed(known: Mapping[str, Series]) -> list[str]:
     return [f"{said}: one of them is not in SI units"]
 
 
-def _yaw(known: Mapping[str, Series]) -> list[str]:
+def _yaw(known: Mapping[str, Series], lanes: Lanes) -> list[str]:
     if not known.keys() >= {"lateral_position", "yaw_angle"}:
         return []
     moved = _rate(known, "lateral_position")
-    moved = np.where(np.abs(moved) * _LAG > _JUMP, np.nan, moved)
+    moved = np.where(np.abs(moved) * _LAG > lanes.width / 2.0, np.nan, moved)
     speed = known.get("longitudinal_velocity", np.ones_like(known["time"]))
     fit = _fit(_mean(known, speed * known["yaw_angle"]), moved)
     if fit.correlation < -_CORRELATION:
@@ -142,12 +185,12 @@ def _rates(known: Mapping[str, Series]) -> list[str]:
     return found
 
 
-def _lanes(known: Mapping[str, Series]) -> list[str]:
+def _lanes(known: Mapping[str, Series], lanes: Lanes) -> list[str]:
     if "lateral_position" not in known:
         return []
     position = known["lateral_position"]
     steps = np.abs(np.diff(position))
-    jumps = np.flatnonzero(steps > _JUMP)
+    jumps = np.flatnonzero(steps > lanes.width / 2.0)
     if jumps.size:
         row = int(jumps[0])
         return [
@@ -158,30 +201,38 @@ def _lanes(known: Mapping[str, Series]) -> list[str]:
         ]
     if "lane" not in known:
         return []
-    right = position < -LANE_WIDTH / 2.0
-    wrong = np.isfinite(position) & np.isin(known["lane"], (0, 1))
-    wrong &= right != (known["lane"] == 0)
+    with np.errstate(invalid="ignore"):
+        from_left = np.clip(np.ceil(-position / lanes.width - 0.5), 0, lanes.count - 1)
+    wrong = np.isfinite(position) & np.isin(known["lane"], range(lanes.count))
+    wrong &= known["lane"] != lanes.count - 1 - from_left
     if wrong.sum() * 20 < wrong.size:
         return []
     return [
         f"lane and lateral_position contradict each other in {wrong.sum()} rows, first "
         f"in row {int(np.flatnonzero(wrong)[0])}: the position counts from the left "
-        "lane's centre, left positive, lanes from the right (0 right, 1 left)"
+        f"lane's centre, left positive, lanes from the right (0 right, "
+        f"{lanes.count - 1} left)"
     ]
 
 
-def joined(columns: Columns) -> dict[str, NDArray[Any]]:
+def joined(columns: Columns, lanes: Lanes = PAPERS) -> dict[str, NDArray[Any]]:
     """Columns with a position from one line, where it was from each lane's centre.
 
-    It begins in the left lane, unless `lane` says 0.
+    It begins in the left lane, unless `lane` says another one.
+
+    Args:
+        columns: Of a record or table, shape `(time,)` each.
+        lanes: Of its road.
     """
     found = dict(columns)
     position = np.asarray(found["lateral_position"], np.float64)
     steps = np.diff(position, prepend=position[:1])
-    jumps = np.where(np.abs(steps) > _JUMP, steps, 0.0)
-    lanes = np.round(jumps / LANE_WIDTH) * LANE_WIDTH
-    right = "lane" in found and bool(np.ma.getdata(found["lane"])[0] == 0)
-    found["lateral_position"] = position - np.cumsum(lanes) - LANE_WIDTH * right
+    jumps = np.where(np.abs(steps) > lanes.width / 2.0, steps, 0.0)
+    jumped = np.round(jumps / lanes.width) * lanes.width
+    last = lanes.count - 1
+    first = np.ma.getdata(found["lane"])[0] if "lane" in found else last
+    from_left = last - int(first) if first in range(last) else 0
+    found["lateral_position"] = position - np.cumsum(jumped) - lanes.width * from_left
     return found
 
 

@@ -16,6 +16,14 @@ VIRTUAL, PERSON, HANDS_OFF = "virtual", "person", "hands-off"
 DRIVER_KINDS = (VIRTUAL, PERSON, HANDS_OFF)
 """Who held the wheel: a virtual driver, a person, nobody."""
 
+ARRIVED, COLLISION, STOPPED, OUT_OF_TIME = OUTCOMES = (
+    "arrived",
+    "collision",
+    "stopped",
+    "out of time",
+)
+"""How a simulated trial ended; `stopped`: the car stood and did not drive on."""
+
 METADATA_FIELDS: tuple[str, ...] = (
     "version",
     "seed",

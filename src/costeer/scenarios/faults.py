@@ -54,9 +54,12 @@ def _of_names(scenario: Scenario) -> Iterator[Fault]:
     if not _NAME.fullmatch(scenario.name):
         told = "give small letters, digits and hyphens, at most 40, as wet-curve"
         yield Fault(("name",), f"name {_short(scenario.name)} is no name; {told}")
-    if len(scenario.about) > _LONGEST_ABOUT or not scenario.about.isprintable():
+    if len(scenario.about) > _LONGEST_ABOUT:
         told = f"about has {len(scenario.about)} letters; give one line of at most"
         yield Fault(("about",), f"{told} {_LONGEST_ABOUT}")
+    if not scenario.about.isprintable():
+        told = "about has line breaks or control characters; give one line"
+        yield Fault(("about",), told)
     yield from _choice(("after_collision",), scenario.after_collision, AFTER_COLLISION)
     yield from _choice(("road", "traffic"), scenario.road.traffic, tuple(SIDES))
     for place, actor in enumerate(scenario.actors):
@@ -173,10 +176,13 @@ def faults_of_speed(scenario: Scenario, speed: float) -> Iterator[Fault]:
 
 def _of_other_cars(scenario: Scenario) -> Iterator[Fault]:
     stream, overtaking = scenario.stream, scenario.overtaking
-    free = MOST_CARS - len(scenario.actors)
-    if stream.cars > free:
-        told = f"cars is {stream.cars}; beside {len(scenario.actors)} actors give at"
-        yield Fault(("stream", "cars"), f"{told} most {max(free, 0)}")
+    actors = len(scenario.actors)
+    if actors > MOST_CARS:
+        told = f"{actors} actors; give at most {MOST_CARS}"
+        yield Fault(("actors", MOST_CARS), told)
+    elif stream.cars > MOST_CARS - actors:
+        told = f"cars is {stream.cars}; beside {actors} actors give at most"
+        yield Fault(("stream", "cars"), f"{told} {MOST_CARS - actors}")
     room = 2.0 * stream.reach * scenario.road.lanes / max(stream.cars, 1)
     if stream.cars and room < 20.0:
         yield Fault(

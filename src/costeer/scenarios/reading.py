@@ -16,6 +16,7 @@ from costeer.base.nested import filled, parsed_mapping
 from costeer.scenarios.definition import Scenario, speed_of
 from costeer.scenarios.faults import faults, faults_of_speed
 from costeer.scenarios.limits import Place
+from costeer.scenarios.unreadable import in_words
 
 _LONGEST_FILE = 200_000
 """Of a scenario [bytes]: some hundred times those that ship."""
@@ -153,7 +154,7 @@ def parsed(text: bytes | str, name: str) -> Scenario:
         content = parsed_mapping(text, name)
         scenario = filled(Scenario, content, name)
     except ValueError as error:
-        told = str(error)
+        told = in_words(error, text, name)
         shortened = f"{told[: _LONGEST_MESSAGE - 3]}..."
         wrong = told if len(told) <= _LONGEST_MESSAGE else shortened
         raise ValueError(wrong) from error

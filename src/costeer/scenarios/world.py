@@ -20,7 +20,9 @@ from costeer.plant.fleet import (
     CarKind,
     FleetParameters,
     fleet_parameters,
+    num_cars,
 )
+from costeer.plant.fleet import KINDS as ROWS
 from costeer.plant.fleet import Order as CarOrder
 from costeer.plant.parameters import CarParameters, RoadParameters
 from costeer.plant.road import cruising_lane, lane_centre
@@ -103,21 +105,57 @@ def world_of(scenario: Scenario, draw: Draw) -> World:
         draw: Which drive it is.
     """
     road = road_of(scenario.road, draw.length)
-    own = CarKind(length=draw.car.length, width=draw.car.width)
-    others = others_of(scenario, draw)
     return World(
         road=road,
         alignment=alignment_of(scenario.road),
         traffic=_traffic(scenario.overtaking),
-        fleet=fleet_parameters(others, scenario.stream.reach, own),
+        fleet=fleet_on(scenario, draw, road),
         stretches=_stretches(scenario),
     )
 
 
-def others_of(scenario: Scenario, draw: Draw) -> list[CarKind]:
+def fleet_on(scenario: Scenario, draw: Draw, road: RoadParameters) -> FleetParameters:
+    """The driven car and all others but those to overtake.
+
+    Args:
+        scenario: Checked before.
+        draw: Which drive it is, with the car as it is driven.
+        road: As it is driven on, which may be another than the scenario's.
+    """
+    own = CarKind(length=draw.car.length, width=draw.car.width)
+    others = others_of(scenario, draw, road)
+    return fleet_parameters(others, scenario.stream.reach, own)
+
+
+def others_of(
+    scenario: Scenario, draw: Draw, road: RoadParameters | None = None
+) -> list[CarKind]:
     """All other cars but those to overtake: the actors first, then the stream."""
-    road = road_of(scenario.road, draw.length)
+    road = road or road_of(scenario.road, draw.length)
     return [*_actors(scenario, road), *_stream(scenario, road, draw)]
+
+
+def sizes_of(scenario: Scenario, fleet: FleetParameters) -> list[dict[str, object]]:
+    """Kind, length and width [m] of each other car, in the order of its columns.
+
+    Args:
+        scenario: Whose actors come first.
+        fleet: Of its drive.
+    """
+    kinds = [each.kind for each in scenario.actors]
+    long = KINDS["truck"][0] - 0.1
+    sizes: list[dict[str, object]] = []
+    for place in range(num_cars(fleet)):
+        row = ROWS.read(fleet.kinds, place + 1)
+        streams = "truck" if row.length > long else "car"
+        sizes.append(
+            {
+                "kind": kinds[place] if place < len(kinds) else streams,
+                "length": float(row.length),
+                "width": float(row.width),
+            }
+        )
+    return sizes
 
 
 def road_of(road: Road, length: float) -> RoadParameters:

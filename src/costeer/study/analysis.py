@@ -10,7 +10,7 @@ import numpy as np
 
 from costeer.records.adaptation import AS_IT_IS, Adaptation
 from costeer.records.columns import TrialRecord
-from costeer.records.contradictions import contradictions, unwrapped
+from costeer.records.contradictions import Lanes, contradictions, lanes_of, unwrapped
 from costeer.records.plausible import unit_doubts
 from costeer.records.record import read_noted
 from costeer.records.tables import AS_FOUND, Reading
@@ -94,7 +94,8 @@ def analyse(
 ) -> list[Analysis]:
     """Measure every stretch of a recording; see `analyse_file`."""
     parameters = parameters_of(recording, parameters)
-    parts = stretches(recording.columns, adaptation)
+    lanes = lanes_of(recording.metadata)
+    parts = stretches(recording.columns, adaptation, lanes)
     return [_analysed(recording, part, parameters, source) for part in parts]
 
 
@@ -151,21 +152,11 @@ def _mended(
     """
     _sampling(part)
     columns, told = unwrapped(part.columns)
-    doubts = [*told, *contradictions(_on_two_lanes(columns, parameters))]
+    lanes = Lanes(parameters.lane_width, int(parameters.num_lanes))
+    doubts = [*told, *contradictions(columns, lanes)]
     doubts += unit_doubts(columns)
     columns, gaps = bridged(columns)
     return part._replace(columns=columns), doubts, gaps
-
-
-def _on_two_lanes(columns: Columns, parameters: MeasureParameters) -> Columns:
-    """The columns without lanes that are not those of the paper's two-lane road.
-
-    Only on that road is it known which lane belongs to which position.
-    """
-    road = (parameters.num_lanes, parameters.lane_width)
-    if road == (DEFAULTS.num_lanes, DEFAULTS.lane_width):
-        return columns
-    return {name: values for name, values in columns.items() if name != "lane"}
 
 
 def _sampling(part: Stretch) -> Sampling:

@@ -6,13 +6,12 @@ middle is in.
 
 from __future__ import annotations
 
-import re
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from costeer.records.cars import CAR_SIGNALS
+from costeer.records.cars import CAR_COLUMN, CAR_SIGNALS
 from costeer.study.definitions import (
     Columns,
     MeasureParameters,
@@ -21,9 +20,6 @@ from costeer.study.definitions import (
 )
 from costeer.study.lanes import centres, lanes
 from costeer.study.scenario import Surroundings
-
-CAR_COLUMN = re.compile(rf"car_(\d+)_({'|'.join(CAR_SIGNALS)})")
-"""Name of a column that says where another car is."""
 
 _USUAL_LENGTH = 4.5
 """Of a car whose length is not known [m]. Source: assumed, as that of ours."""

@@ -13,6 +13,7 @@ from costeer.records.adaptation import AS_IT_IS, Adaptation, adapted, cleaned
 from costeer.records.cars import car_columns
 from costeer.records.checks import converted
 from costeer.records.columns import COLUMNS_BY_NAME, Column
+from costeer.records.contradictions import PAPERS, Lanes
 from costeer.records.names import empty_told, groups
 from costeer.records.times import no_time
 from costeer.study.definitions import Columns
@@ -44,13 +45,14 @@ _NEEDED = ("time", "lateral_position", "yaw_angle", "steering_wheel_angle")
 
 
 def stretches(
-    columns: Columns, adaptation: Adaptation = AS_IT_IS
+    columns: Columns, adaptation: Adaptation = AS_IT_IS, lanes: Lanes = PAPERS
 ) -> tuple[Stretch, ...]:
     """Rename, scale and split the columns of a table.
 
     Args:
         columns: As read, shape `(time,)` each.
         adaptation: What to rename and scale, and how to split.
+        lanes: Of the road.
 
     Returns:
         The stretches in the order in which they begin.
@@ -74,7 +76,7 @@ def stretches(
             for name, rows in groups(renamed[key])
         ]
     return tuple(
-        _stretch(Stretch(name, part, ignored, tuple(notes)), adaptation)
+        _stretch(Stretch(name, part, ignored, tuple(notes)), adaptation, lanes)
         for name, part in parts
     )
 
@@ -87,9 +89,9 @@ def _key(columns: Columns) -> str:
     return "participant" if several else ""
 
 
-def _stretch(part: Stretch, adaptation: Adaptation) -> Stretch:
+def _stretch(part: Stretch, adaptation: Adaptation, lanes: Lanes) -> Stretch:
     """The stretch as the user wants it: without repeated times, lanes joined."""
-    columns, told = cleaned(part.columns, adaptation)
+    columns, told = cleaned(part.columns, adaptation, lanes)
     return part._replace(columns=columns, notes=(*part.notes, *told))
 
 

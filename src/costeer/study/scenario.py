@@ -89,10 +89,17 @@ def _is_number(value: object) -> bool:
 def _lengths(
     record: TrialRecord, scenario: Scenario, car: CarParameters
 ) -> NDArray[np.float64]:
-    """Lengths of the other cars [m], drawn again from what the trial was asked to be.
+    """Lengths of the other cars [m].
 
-    A record keeps where cars are, not their sizes; those follow from scenario and seed.
+    Older records do not say them; they follow from what the trial was asked to be.
     """
+    told = record.metadata.get("other_cars")
+    if isinstance(told, list):
+        lengths = [
+            each.get("length") if isinstance(each, Mapping) else None for each in told
+        ]
+        known = [each if _is_number(each) else CarKind().length for each in lengths]
+        return np.array(known, np.float64)
     setup = _part(record.metadata, "setup")
     try:
         draw = Draw(

@@ -22,7 +22,7 @@ from costeer.study.definitions import (
     unknown,
 )
 from costeer.study.manoeuvres import rms, steering_rate
-from costeer.study.neighbours import CAR_COLUMN, others
+from costeer.study.neighbours import others
 from costeer.study.scenario import Surroundings
 from costeer.study.segments import LaneChange
 from costeer.study.traffic import accepted_gaps, contacts, nearness

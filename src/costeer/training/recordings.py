@@ -27,7 +27,13 @@ from costeer.intention.features import (
 )
 from costeer.records.adaptation import AS_IT_IS, Adaptation, adapted, cleaned
 from costeer.records.checks import check_time, text_told
-from costeer.records.contradictions import contradictions, unwrapped
+from costeer.records.contradictions import (
+    PAPERS,
+    Lanes,
+    contradictions,
+    lanes_of,
+    unwrapped,
+)
 from costeer.records.names import empty_told, groups, names_of
 from costeer.records.plausible import unit_doubts
 from costeer.records.record import TrialRecord, read_noted
@@ -94,8 +100,16 @@ def recording(driver: str, name: str, columns: Columns) -> Recording:
     return found[0]
 
 
-def runs(driver: str, name: str, columns: Columns) -> list[Recording]:
+def runs(
+    driver: str, name: str, columns: Columns, lanes: Lanes | None = None
+) -> list[Recording]:
     """The recordings of a stretch: one on two lanes, else one for each side.
+
+    Args:
+        driver: Who drove.
+        name: For messages.
+        columns: Of the stretch, shape `(time,)` each.
+        lanes: Of the road that a record says it was driven on.
 
     Raises:
         ValueError: If a column is missing or holds what it cannot, or the rate is not
@@ -116,7 +130,7 @@ def runs(driver: str, name: str, columns: Columns) -> list[Recording]:
             labels=labels(crossing, course.side),
             notes=(
                 *(f"{name}: {each}" for each in told),
-                *_contradicting(name, columns),
+                *_contradicting(name, columns, lanes),
                 *_notes(name, columns),
             ),
             absent=absent_signals(columns),
@@ -131,15 +145,17 @@ def _notes(name: str, columns: Columns) -> tuple[str, ...]:
     return (*units, *remarks(name, columns))
 
 
-def _contradicting(name: str, columns: Columns) -> list[str]:
+def _contradicting(
+    name: str, columns: Columns, lanes: Lanes | None = None
+) -> list[str]:
     """What the columns of one stretch say against each other.
 
-    Where the side of the adjacent lane is given, the lanes are not those of the
+    Where a table gives the side of the adjacent lane, the lanes are not those of the
     two-lane road, and positions cannot be held against them.
     """
-    if "adjacent_side" in columns:
+    if lanes is None and "adjacent_side" in columns:
         columns = {key: values for key, values in columns.items() if key != "lane"}
-    return [f"{name}: {each}" for each in contradictions(columns)]
+    return [f"{name}: {each}" for each in contradictions(columns, lanes or PAPERS)]
 
 
 def lacking(recording: Recording, absent: Sequence[str]) -> Recording:
@@ -274,10 +290,11 @@ def recordings_of(
     before = [f"{name}: {each}" for each in (*told, *renamed)]
     if record.metadata:
         driver = f"{record.metadata['seed']}-{record.metadata['participant']}"
-        columns, dropped = cleaned(columns, adaptation)
+        lanes = lanes_of(record.metadata)
+        columns, dropped = cleaned(columns, adaptation, lanes)
         columns = with_side(columns, record.metadata)
         before += [f"{name}: {each}" for each in dropped]
-        return _with_notes(runs(driver, name, columns), before)
+        return _with_notes(runs(driver, name, columns, lanes), before)
     _check_names(name, columns)
     for key in (key for key in _KEYS if key in columns):
         before += [f"{name}: {each}" for each in empty_told(key, columns[key])]

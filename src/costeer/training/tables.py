@@ -23,6 +23,7 @@ from costeer.intention.features import (
     adjacent_side,
 )
 from costeer.records.adaptation import EXTRA_NAMES
+from costeer.records.cars import CAR_COLUMN
 from costeer.records.columns import COLUMN_NAMES
 from costeer.training.labels import crossings
 from costeer.training.resample import EVEN, delayed, grid, held, sample_at
@@ -217,7 +218,11 @@ def remarks(name: str, columns: Columns) -> list[str]:
 
 def _unknown(columns: Columns) -> str:
     known = (*COLUMN_NAMES, *EXTRA_NAMES)
-    odd = [column for column in columns if column not in known]
+    odd = [
+        column
+        for column in columns
+        if column not in known and not CAR_COLUMN.fullmatch(column)
+    ]
     if not odd:
         return ""
     near = {

@@ -11,13 +11,12 @@ from collections.abc import Mapping
 
 from costeer.base.nested import filled
 from costeer.plant.alignment import MOST_STATIONS
-from costeer.plant.fleet import KINDS as KIND_ROWS
-from costeer.plant.fleet import FleetParameters, num_cars
+from costeer.plant.fleet import MOST_CARS, FleetParameters
 from costeer.plant.parameters import CarParameters
 from costeer.plant.stretches import MOST_STRETCHES
 from costeer.scenarios.definition import EVENT_KINDS, KINDS, SIDES, Scenario, speed_of
 from costeer.scenarios.reading import checked
-from costeer.scenarios.world import Draw, world_of
+from costeer.scenarios.world import Draw, sizes_of, world_of
 
 _LONGEST = 200_000.0
 _SHARPEST = 0.02
@@ -30,7 +29,7 @@ def scenery_of(scenario: object) -> dict[str, object]:
     Returns:
         Name, shoulder [m], whether there is a rumble strip, speed limit as on a sign
         ([number, unit] or null), stations [m, 1/m], what happens from where to where
-        [m], and what follows a collision.
+        [m] and to which side (a gust blows there), and what follows a collision.
     """
     given = _mapping(scenario)
     road = _mapping(given.get("road"))
@@ -47,7 +46,7 @@ def scenery_of(scenario: object) -> dict[str, object]:
                 each["kind"],
                 at,
                 at + bounded(each.get("length"), 60.0, 1.0, 1e5),
-                side if (side := each.get("side")) in SIDES else "",
+                _side(each),
             ]
             for each in _entries(given.get("events"))[:MOST_STRETCHES]
             if each.get("kind") in EVENT_KINDS
@@ -60,6 +59,15 @@ def scenery_of(scenario: object) -> dict[str, object]:
             < (end := bounded(each.get("end"), -1.0, 0.0, _LONGEST))
         ],
     }
+
+
+def _side(event: Mapping[str, object]) -> str:
+    """Side of a lane change that is asked for, or to which a gust blows."""
+    if event.get("kind") == "gust":
+        force = bounded(event.get("force"), 0.0, -1e9, 1e9)
+        return "left" if force > 0.0 else "right"
+    side = event.get("side")
+    return side if isinstance(side, str) and side in SIDES else ""
 
 
 def bounded(value: object, usual: float, low: float, high: float) -> float:
@@ -109,19 +117,25 @@ def _stations(value: object) -> list[list[float]]:
 
 def cars_of(scenario: Scenario, fleet: FleetParameters) -> list[list[object]]:
     """Kind, length and width [m] of each other car, in the order of its columns."""
-    kinds = [each.kind for each in scenario.actors]
-    long = KINDS["truck"][0] - 0.1
-    cars: list[list[object]] = []
-    for place in range(num_cars(fleet)):
-        row = KIND_ROWS.read(fleet.kinds, place + 1)
-        own = "truck" if row.length > long else "car"
-        kind = kinds[place] if place < len(kinds) else own
-        cars.append([kind, float(row.length), float(row.width)])
-    return cars
+    return [[*each.values()] for each in sizes_of(scenario, fleet)]
 
 
 def cars_of_record(about: Mapping[str, object], length: float) -> list[list[object]]:
-    """The same of a record; none if it does not say which scenario it was, whole."""
+    """The same of a record; none if it does not say it.
+
+    Older records do not say sizes; those follow from the scenario, if it is whole.
+    """
+    told = _entries(about.get("other_cars"))[:MOST_CARS]
+    if told:
+        kinds = [str(each.get("kind")) for each in told]
+        return [
+            [
+                kind if kind in KINDS else "car",
+                bounded(each.get("length"), KINDS["car"][0], 0.2, 30.0),
+                bounded(each.get("width"), KINDS["car"][1], 0.2, 4.0),
+            ]
+            for kind, each in zip(kinds, told, strict=True)
+        ]
     setup = _mapping(_mapping(about.get("configuration")).get("setup"))
     seed, participant = setup.get("seed"), setup.get("participant")
     if not isinstance(seed, int) or not isinstance(participant, int):

@@ -93,6 +93,51 @@ def test_cars_ahead_in_a_curve_stand_on_the_road(page: Page) -> None:
     assert (place["x"], place["y"], place["heading"]) == pytest.approx(wanted, abs=0.01)
 
 
+MARKS = """async (role) => {
+  const { Alignment } = await import("/js/scene/alignment.js");
+  const { Course } = await import("/js/scene/course.js");
+  const { layoutOf } = await import("/js/scene/layout.js");
+  const { buildMarks } = await import("/js/scene/marks.js");
+  const { Workshop } = await import("/js/scene/workshop.js");
+  const layout = layoutOf({ lane_width: 3.5, num_lanes: 2, overtaking_side: -1 });
+  const scenario = {
+    events: [["gust", 500, 560, "left"], ["gust", 2000, 2060, "right"],
+      ["lane-change", 700, 800, "right"]],
+    zones: [["bend", 400, 900]],
+  };
+  const course = new Course(new Alignment());
+  const marks = buildMarks(new Workshop(true, 1), course, layout, { role, scenario });
+  course.moveTo(300);
+  marks.update(300);
+  return marks.group.children.map((mesh) => {
+    mesh.geometry.computeBoundingBox();
+    const { min, max } = mesh.geometry.boundingBox;
+    return [mesh.visible, mesh.position.x, mesh.position.y, min.y, max.y, max.z];
+  });
+}"""
+
+
+def test_windsocks_stand_where_gusts_begin_and_show_their_side(page: Page) -> None:
+    left, right = page.evaluate(MARKS, "driver")
+    # Under left-hand traffic beyond the barrier on the left, 2.5 m from the lane.
+    assert left[:2] == [True, 200]
+    assert left[2] > 1.75 + 2.5
+    assert left[4] > 2.0 > -0.5 < left[3]
+    assert right[0] is False
+    assert right[3] < -2.0 < 0.5 > right[4]
+    assert left[5] > 4.0
+
+
+def test_lines_of_zones_are_for_experimenters(page: Page) -> None:
+    assert len(page.evaluate(MARKS, "driver")) == 2
+    lines = page.evaluate(MARKS, "experimenter")[2:]
+    assert [line[:2] for line in lines] == [[True, 100], [True, 600]]
+    for _, _, _, right, left, height in lines:
+        # Across both lanes and what is paved beside them.
+        assert (right, left) == (pytest.approx(-7.75), pytest.approx(4.25))
+        assert 0.0 < height < 0.1
+
+
 def test_brake_lamps_and_indicators_tell_what_a_car_does(page: Page) -> None:
     told = page.evaluate(
         """async () => {

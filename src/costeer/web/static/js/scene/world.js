@@ -12,6 +12,7 @@ import { carParts } from "./car.js";
 import { Course } from "./course.js";
 import { buildLandmarks } from "./landmarks.js";
 import { PERIOD, layoutOf } from "./layout.js";
+import { buildMarks } from "./marks.js";
 import { OWN_BODY } from "./mirrors.js";
 import { ribbons } from "./ribbon.js";
 import { buildFields, buildRoad } from "./road.js";
@@ -40,6 +41,7 @@ export class World {
     this.heaven = new Group();
     this.heaven.add(buildSky(workshop.low), ...workshop.lights());
     this.buildRoad(workshop, hello.scenario?.speed_limit);
+    this.marks = buildMarks(workshop, this.course, this.layout, hello);
     this.traffic = new Traffic(workshop, this.layout, hello);
     /** The own car; cameras and mirrors hang on it. */
     this.car = new Group();
@@ -47,8 +49,8 @@ export class World {
     for (const part of body) part.layers.set(OWN_BODY);
     this.car.add(...body);
     axes.add(
-      this.heaven, this.fields.mesh, this.repeating, this.landmarks.group, this.traffic.group,
-      this.car,
+      this.heaven, this.fields.mesh, this.repeating, this.landmarks.group, this.marks.group,
+      this.traffic.group, this.car,
     );
   }
 
@@ -75,6 +77,7 @@ export class World {
     this.fields.update(this.course.origin);
     this.roadside.update(position);
     this.landmarks.update(position);
+    this.marks.update(position);
     this.car.position.y = this.heaven.position.y = finite("lateral_position");
     this.car.rotation.z = finite("yaw_angle");
     this.heaven.rotation.z = -this.course.origin.heading;
