@@ -43,7 +43,7 @@ def test_an_installed_package_offers_its_method_by_name(
     installed(tmp_path, "rivals", "[costeer.methods]\npi = offered_module:METHOD\n")
     monkeypatch.syspath_prepend(tmp_path)
     assert method_named("pi").name == "pi-keeping"
-    with pytest.raises(ValueError, match="choose one of ibhs, manual, .*, pi"):
+    with pytest.raises(ValueError, match=r"choose one of ibhs, manual, .*, pi"):
         method_named("stalk")
 
 
