@@ -259,6 +259,7 @@ def serve(record: Path, cell: str, link: Connection) -> None:
     def go_on(frame: NDArray[np.float64]) -> None:
         if frame[PLACE["run_state"]] == RunState.PAUSED:  # by a busy machine
             with suppress(ValueError):
+                drive.send("acknowledge")
                 drive.send("resume")
 
     listener = Listener(go_on, lambda marker: None)

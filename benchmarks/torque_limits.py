@@ -194,6 +194,7 @@ def through_a_drive(seconds: float) -> Seen:
             if draw.random() < 0.02:
                 rig.ask(*draw.choice(COMMANDS))
             if rig.driving._run_state != RunState.RUNNING and draw.random() < 0.1:
+                rig.ask("acknowledge")
                 rig.ask("start")
                 rig.ask("resume")
             rig.steps(1)

@@ -159,6 +159,7 @@ def _collect(session: DriveOnPages, seconds: float) -> NDArray[np.float64]:
         time.sleep(1.0)
         if drive.shared.mailbox.get("stalled"):
             with suppress(ValueError):
+                drive.send("acknowledge")
                 drive.send("resume")  # and its figures tell what it cost
         next_row, rows = drive.shared.trace.since(next_row)
         parts.append(rows)

@@ -113,7 +113,7 @@ def test_the_population_is_that_of_the_trials() -> None:
         ({"length": 1.0}, "length is 1.0; give a number from 100"),
         ({"car": "tractor"}, "car 'tractor' is not known"),
         ({"driver": "nobody"}, "driver 'nobody' is not known"),
-        ({"predictor": "grue"}, "there is no predictor 'grue'"),
+        ({"predictor": "grue"}, "predictor 'grue' is not known"),
     ],
 )
 def test_a_slip_is_an_error_that_says_the_way_out(

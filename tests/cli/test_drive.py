@@ -198,6 +198,7 @@ def drive_a_while(address: str) -> None:
             if frame[PLACE["time"]] > 1.0:
                 return
             if frame[PLACE["run_state"]] == RunState.PAUSED and sequence % 60 == 0:
+                page.send('{"type":"acknowledge"}')
                 page.send('{"type":"resume"}')
 
 

@@ -120,10 +120,39 @@ def test_simulated_drivers_are_judged(
     assert {(setup.seed, setup.strength_factor) for setup in asked} == {(4, 0.0)}
 
 
+def test_simulated_drivers_drive_in_a_scenario_and_the_result_says_so(
+    weights: Path,
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    asked: list[TrialSetup] = []
+
+    def made(setups: Sequence[TrialSetup], *_: object) -> list[Recording]:
+        asked.extend(setups)
+        return drives(len(setups), num_changes=1)
+
+    monkeypatch.setattr(simulation, "simulate_setups", made)
+    file = tmp_path / "short.yaml"
+    file.write_text("name: short-way\nspeed: 20\nroad: {length: 900}\n")
+    words = ("--simulate", 2, "--weights", weights)
+    assert evaluate(*words, "--scenario", file, "--json") == 0
+    assert json.loads(capsys.readouterr().out)["scenario"] == "short-way"
+    assert {(setup.length, setup.speed) for setup in asked} == {(900.0, 20.0)}
+    assert evaluate(*words, "--scenario", file) == 0
+    assert "short-way" in capsys.readouterr().out
+    # Without one: the published road, as the record of a study has it.
+    assert evaluate(*words, "--json") == 0
+    assert json.loads(capsys.readouterr().out)["scenario"] == "expressway"
+    assert {setup.scenario for setup in asked[-2:]} == {"expressway"}
+
+
 @pytest.mark.parametrize(
     ("arguments", "told"),
     [
         ((), "give --simulate 24"),
+        (("x.csv", "--scenario", "obstacle"), "--scenario is of simulated drivers"),
+        (("--simulate", "2", "--scenario", "three-lane"), "three-lanes"),
         (("x.csv", "--simulate", "3"), "files and --simulate"),
         (("x.csv", "--seed", "3"), "add --simulate N"),
         (("x.csv", "--data", "."), "add --dataset NAME"),

@@ -166,7 +166,7 @@ def _gives(answer: Any) -> Callable[..., Any]:
 @pytest.mark.parametrize(
     ("changed", "said"),
     [
-        ({"name": "virtual"}, "called 'virtual', as costeer's own"),
+        ({"name": "virtual"}, "two drivers are called 'virtual'"),
         ({"name": "Mine"}, "small letters"),
         ({"act": None}, "has no act function"),
         ({"version": 2}, "version of driver model 'push' is 2; give text"),

@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 from costeer.controller.signals import Assistance
-from costeer.methods.checked import checked_method
+from costeer.methods.checked import checked_method, hears_triggers
+from costeer.methods.ibhs import IBHS
 from costeer.methods.interface import Method, Tunable
 from costeer.methods.registry import AnyMethod
 from costeer.records.columns import Column
@@ -85,3 +86,8 @@ def test_what_is_no_method_is_refused() -> None:
 def test_a_torque_of_nan_or_over_the_limit_is_for_the_loop_to_contain() -> None:
     for value in (math.nan, 900.0):
         assert checked_method(answering((Memory(0.0), torque(value)))).name == "rival"
+
+
+def test_whether_a_method_hears_triggers_is_found_by_asking_it() -> None:
+    assert hears_triggers(IBHS)
+    assert not hears_triggers(rival(damping))

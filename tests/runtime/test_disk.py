@@ -118,6 +118,7 @@ def test_trial_waits_while_the_disk_is_full_and_loses_nothing(
     assert Fault.RECORD_STOPPED.text in kept.rig.heard()[-1].note
     disk.is_full = False
     kept.until(Fault.RECORD_MENDED)
+    kept.ask("acknowledge")
     kept.ask("resume")
     kept.steps(30)
     kept.keeper.close()
@@ -165,6 +166,7 @@ def test_record_that_cannot_begin_begins_as_soon_as_it_can(
     monkeypatch.undo()
     kept.keeper.retry(kept.rig.shared)
     assert of(kept.steps(2), "fault")[-1] == Fault.RECORD_MENDED
+    kept.ask("acknowledge")
     kept.ask("resume")
     kept.steps(30)
     kept.keeper.close()

@@ -101,9 +101,50 @@ def test_wheel_is_opened_anew_after_the_loop_slept_and_not_without_need(
     assert drive.driving._cabin.wheel is first
     drive.now += 2.0 * EFFECT_LIFE
     assert of(drive.steps(2), "fault")[-1] == Fault.STALLED
+    drive.ask("acknowledge")
     drive.ask("resume")
     assert of(drive.steps(1), "run_state")[-1] == RunState.RUNNING
     assert drive.driving._cabin.wheel is not first
+
+
+@pytest.mark.parametrize("fault", Fault)
+@pytest.mark.parametrize("where", ["start", "resume"])
+def test_no_fault_but_a_closed_page_is_left_without_a_word(
+    rig: MakeRig, fault: Fault, where: str
+) -> None:
+    drive = rig(drive_setup())
+    if where == "resume":
+        drive.ask("start")
+        drive.steps(1)
+        drive.ask("pause", "driver")
+        drive.steps(1)
+    drive.driving._break_off(fault)
+    drive.ask(where)
+    free = fault in (Fault.NONE, Fault.PAGE_LOST, Fault.ACKNOWLEDGED)
+    assert (of(drive.steps(1), "run_state")[-1] == RunState.RUNNING) == free
+    if free:
+        return
+    drive.ask("acknowledge")
+    drive.ask(where)
+    mended = of(drive.steps(1), "run_state")[-1] == RunState.RUNNING
+    assert mended == fault.can_resume
+
+
+def test_fault_after_the_word_needs_another(rig: MakeRig) -> None:
+    drive = rig(wheel_setup(hands=HANDS))
+    drive.steps(1)
+    drive.ask("start")
+    drive.steps(2)
+    for _ in range(2):
+        drive.shared.mailbox.put(stalled=1.0)
+        drive.steps(2)
+        drive.ask("acknowledge")
+        assert of(drive.steps(1), "fault")[-1] == Fault.ACKNOWLEDGED
+    drive.shared.mailbox.put(stalled=1.0)  # in the very moment of going on
+    drive.ask("resume")
+    frames = drive.steps(2)
+    assert of(frames, "run_state")[-1] == RunState.PAUSED
+    assert of(frames, "fault")[-1] == Fault.STALLED
 
 
 def test_loop_whose_server_has_hung_up_ends(rig: MakeRig) -> None:

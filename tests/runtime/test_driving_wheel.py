@@ -119,7 +119,15 @@ def test_unplugged_wheel_pauses_the_trial_and_says_so(rig: MakeRig) -> None:
     assert of(frames, "fault")[-1] == Fault.WHEEL_LOST
     assert of(frames, "time")[-1] == pytest.approx(0.5, abs=0.05)
     assert drive.heard()[-1][:2] == ("fault", "wheel_lost")
-    # A new one (the same, seen from its own start) is found, and the trial goes on.
+    # A new one (the same, seen from its own start) is found, and the trial goes on:
+    # not by the key with which drives begin alone.
+    drive.ask("resume")
+    again = drive.steps(5)
+    assert of(again, "run_state")[-1] == RunState.PAUSED
+    assert "say that it is mended" in drive.heard()[-1].note
+    drive.ask("acknowledge")
+    assert of(drive.steps(2), "run_state")[-1] == RunState.PAUSED
+    assert drive.heard()[-1][:2] == ("fault", "acknowledged")
     drive.ask("resume")
     again = drive.steps(5)
     assert of(again, "run_state")[-1] == RunState.RUNNING
@@ -196,6 +204,7 @@ def test_loop_that_was_stuck_finds_its_trial_paused_and_can_resume(
     assert of(frames, "fault")[-1] == Fault.STALLED
     assert of(frames, "run_state")[-1] == RunState.PAUSED
     assert (of(frames, "wheel_torque")[4:] == 0.0).all()
+    drive.ask("acknowledge")
     drive.ask("resume")
     frames = drive.steps(70)
     assert (of(frames, "run_state")[1:] == RunState.RUNNING).all()
@@ -212,10 +221,11 @@ def test_wheel_opened_anew_after_a_stall_may_first_have_to_be_turned(
     drive.shared.mailbox.put(stalled=1.0)
     drive.steps(2)
     monkeypatch.setattr(SimulatedWheel, "is_awake", False, raising=False)
-    drive.ask("resume")
+    drive.ask("acknowledge")
     assert of(drive.steps(1), "run_state")[-1] == RunState.PAUSED
     assert "turn the wheel by 10 degrees" in drive.heard()[-1].note
     drive.driving._cabin.wheel.is_awake = True  # type: ignore[union-attr]
+    drive.ask("acknowledge")
     drive.ask("resume")
     assert of(drive.steps(1), "run_state")[-1] == RunState.RUNNING
 

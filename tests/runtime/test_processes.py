@@ -52,6 +52,7 @@ def go_on(drive: Drive, kept: Kept) -> None:
     """Resume a drive that a busy machine has paused."""
     if kept.frames and kept.frames[-1][PLACE["run_state"]] == RunState.PAUSED:
         with suppress(ValueError):
+            drive.send("acknowledge")
             drive.send("resume")
 
 

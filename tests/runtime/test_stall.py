@@ -96,10 +96,11 @@ def test_trial_is_paused_without_torque_while_the_watchdog_stands_still(
     assert of(frames, "run_state")[-1] == RunState.PAUSED
     assert written[-1] == 0.0
     drive.heard()
-    drive.ask("resume")
+    drive.ask("acknowledge")
     assert of(drive.steps(1), "run_state")[-1] == RunState.PAUSED
     assert "watchdog" in drive.heard()[-1].note
     drive.shared.mailbox.put(watched_at=drive.now + 9.0)
+    drive.ask("acknowledge")
     drive.ask("resume")
     assert of(drive.steps(1), "run_state")[-1] == RunState.RUNNING
 
@@ -137,6 +138,7 @@ def test_halted_process_does_not_push_when_it_goes_on(
 
     def pushes() -> bool:
         if frames and frames[-1][PLACE["run_state"]] == RunState.PAUSED:
+            drive.send("acknowledge")
             drive.send("resume")  # a busy machine has paused it
         return abs(cell[0]) > 0.3
 

@@ -13,6 +13,14 @@ DRIVEN = ("manual", "strong-rapid", "weak-gentle")
 PEOPLE = ("P01", "P02", "P03", "P04")
 
 
+@pytest.fixture(autouse=True)
+def home(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Path:
+    """A folder of settings that is nobody's: who withdraws here loses nothing."""
+    folder = tmp_path / "home"
+    monkeypatch.setenv("COSTEER_HOME", str(folder))
+    return folder
+
+
 @pytest.fixture(scope="session")
 def studied(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Four people; an exclusion, an aborted attempt, a dropout, notes; read only."""

@@ -10,6 +10,8 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
+from costeer.devices.head.calibration import HeadCalibration, save_calibration
+from costeer.devices.head.source import HeadDescription
 from costeer.sessions.attempts import ABORTED, RUNNING, Attempts
 from costeer.sessions.plan import (
     balance,
@@ -218,8 +220,13 @@ def test_withdrawal_deletes_rows_files_and_free_pages(tmp_path: Path) -> None:
         go_on(session, "P02")
     session.note("P01", "unusual words xylophone quartz")
     (tmp_path / "records/P01-drive-manual.arrow").write_bytes(b"stream")
+    tracker = HeadDescription("opentrack", "")
+    calibrated = [
+        save_calibration(HeadCalibration(who, tracker)) for who in ("P01", "P02")
+    ]
     files = len(files_of(session, "P01"))
-    assert withdraw(session, "P01") == files == 4
+    assert withdraw(session, "P01") == files == 5
+    assert [file.exists() for file in calibrated] == [False, True]
     assert num_rows_of(session, "P01") == 0
     assert num_withdrawn(session) == 1
     assert num_rows_of(session, "P02") > 0

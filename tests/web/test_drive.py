@@ -15,6 +15,7 @@ from costeer.runtime.markers import Marker
 from costeer.runtime.states import Fault, Loss, RunState
 from costeer.web.drive import DriveOnPages, PageOptions
 from costeer.web.messages import (
+    Acknowledge,
     Indicator,
     Input,
     Latency,
@@ -63,6 +64,7 @@ def sent(session: DriveOnPages) -> Sent:
     [
         (Start(), ("start",)),
         (Resume(), ("resume",)),
+        (Acknowledge(), ("acknowledge",)),
         (Restart(), ("restart",)),
         (Pause(), ("pause", "experimenter")),
         (Indicator(-1), ("indicator", -1)),
@@ -157,6 +159,18 @@ def test_hello_names_every_number_of_a_frame_and_hides_what_participants_may_not
     assert [each["name"] for each in tunables] == [each.name for each in TUNABLES]
     assert tunables[0]["value"] == 1.0
     assert driver["conditions"] == experimenter["conditions"]
+
+
+def test_participant_cannot_take_a_fault_for_mended() -> None:
+    options = PageOptions(driver_acknowledges=False)
+    drive = DriveOnPages(drive_setup(), None, options)
+    sent = Sent(drive)
+    with pytest.raises(ValueError, match="experimenter looks after this"):
+        drive.apply("driver", Acknowledge())
+    assert sent.commands == []
+    drive.apply("experimenter", Acknowledge())
+    assert sent.commands == [("acknowledge",)]
+    drive.stop()
 
 
 def test_hello_tells_states_and_faults_by_their_numbers_in_a_frame(

@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 
 from costeer.web import intake
 from costeer.web.messages import (
+    Acknowledge,
     Indicator,
     Input,
     Latency,
@@ -64,6 +65,7 @@ def refused(text: str | bytes) -> str:
         ({"type": "start"}, Start()),
         ({"type": "pause"}, Pause()),
         ({"type": "resume"}, Resume()),
+        ({"type": "acknowledge"}, Acknowledge()),
         ({"type": "indicator", "side": -1}, Indicator(side=-1)),
         ({"type": "latency", "values": [20, 30.5]}, Latency(values=(20.0, 30.5))),
         ({"type": "set", "name": "gain", "value": 2}, Set(name="gain", value=2.0)),

@@ -43,6 +43,7 @@ def simulate(
     condition: str = "strong-normal",
     *,
     scenario: File | Scenario = "expressway",
+    mistakes: Iterable[str] = (),
     length: float | None = None,
     seed: int = 1,
     participant: int = 1,
@@ -73,6 +74,8 @@ def simulate(
             `strength_factor`.
         scenario: Road, other cars and events: a name of `costeer scenario list`, a
             file "NAME.yaml", or a `costeer.Scenario`.
+        mistakes: Made on purpose, besides those of the scenario: names of `costeer
+            scenario mistakes`, with = a size, as "late-trigger=0.8".
         length: Of the course; that of the scenario's road if None [m].
         seed: Of the population and of all noise.
         participant: Number of the driver in the population.
@@ -126,6 +129,7 @@ def simulate(
         "predictor": by_name(predictor),
         "weights": None if weights is None else os.fspath(weights),
         "parameters": tuple((parameters or {}).items()),
+        "mistakes": (mistakes,) if isinstance(mistakes, str) else tuple(mistakes),
         "trigger_times": tuple(trigger_times),
     }
     return simulate_trial(
@@ -147,6 +151,7 @@ def study(
     method: File | AnyMethod = "ibhs",
     intention: str = "network",
     scenario: File | Scenario = "expressway",
+    mistakes: Iterable[str] = (),
     length: float | None = None,
     speed: float | None = None,
     car: File | CarParameters = "default",
@@ -169,6 +174,8 @@ def study(
         intention: "network", or "scripted": the driver's decision is known.
         scenario: Road, other cars and events: a name of `costeer scenario list`, a
             file "NAME.yaml", or a `costeer.Scenario`.
+        mistakes: Made on purpose, besides those of the scenario: names of `costeer
+            scenario mistakes`, with = a size, as "late-trigger=0.8".
         length: Of the course; that of the scenario's road if None [m].
         speed: Suggested to the drivers; the scenario's if None [m/s].
         car: "default", "compact", "large", parameters, or the file of one.
@@ -213,6 +220,7 @@ def study(
         "weights": "" if weights is None else by_name(weights),
         "drivers": _several(drivers, driver),
         "parameters": tuple((parameters or {}).items()),
+        "mistakes": (mistakes,) if isinstance(mistakes, str) else tuple(mistakes),
     }
     settings = StudySettings(**{name: given[name] for name in StudySettings._fields})
     made = full_report if report else None

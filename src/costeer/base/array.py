@@ -120,6 +120,13 @@ def exp(x: Real) -> Real:
     return cast("Real", _numpy_like(x).exp(x))
 
 
+def log(x: Real) -> Real:
+    """Natural logarithm of a positive number."""
+    if isinstance(x, (float, int)):
+        return math.log(x)
+    return cast("Real", _numpy_like(x).log(x))
+
+
 def floor(x: Real) -> Real:
     """Largest whole number not above `x`, as a float."""
     if isinstance(x, (float, int)):
@@ -235,6 +242,7 @@ _MATH: dict[Callable[..., Any], Callable[..., Any]] = {
     atan: math.atan,
     sqrt: math.sqrt,
     exp: math.exp,
+    log: math.log,
     isfinite: math.isfinite,
 }
 

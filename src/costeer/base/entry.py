@@ -154,3 +154,20 @@ def entry(function: Function) -> Function:
         return cast("Function", _kept(dispatcher, cast("Any", FunctionCache)(function)))
     finally:
         _settings.CACHE_DIR = before
+
+
+@cache
+def simulation_source() -> str:
+    """Return a hash of all files that decide what a simulated trial is.
+
+    The version alone would let a study be finished with other equations than it was
+    begun with, after an edit in a checkout.
+    """
+    package = Path(__file__).parents[1]
+    digest = hashlib.sha256()
+    for room in (*COMPILED_ROOMS, "scenarios"):
+        for file in sorted((package / room).rglob("*")):
+            if file.is_file() and file.suffix != ".pyc":
+                digest.update(file.relative_to(package).as_posix().encode())
+                digest.update(file.read_bytes())
+    return digest.hexdigest()[:16]

@@ -96,6 +96,14 @@ def evaluate(
     seed: Annotated[
         int | None, typer.Option(help="Of --simulate; 1.", callback=at_least(0))
     ] = None,
+    scenario: Annotated[
+        str | None,
+        typer.Option(
+            metavar="NAME|FILE",
+            help="With --simulate: drive there, at its own speed; else on the "
+            "published road at several.",
+        ),
+    ] = None,
     dataset: Annotated[
         str | None, typer.Option(help="Judge on a set of real driving, as ngsim_lc.")
     ] = None,
@@ -137,6 +145,7 @@ def evaluate(
     Example:
         costeer evaluate out/study/records/01-manual.parquet --json
         costeer evaluate --simulate 24 --seed 7 --compare --ablations --out out/judged
+        costeer evaluate --simulate 24 --scenario three-lanes
         costeer evaluate drives.csv --predictor line-time --without head_yaw
         costeer evaluate others.csv --map lab.yaml --resample
         costeer evaluate --dataset ngsim_lc --data data --compare
@@ -144,7 +153,9 @@ def evaluate(
     from costeer.cli import evaluation as parts
     from costeer.training.evaluate import DEFAULTS
 
-    source = parts.Source(files or [], simulate, seed, dataset, data, resample, told)
+    source = parts.Source(
+        files or [], simulate, seed, dataset, data, resample, told, scenario
+    )
     parts.check_source(source)
     chosen = parts.Chosen(predictor, weights, compare, tuple(without or ()), ablations)
     parts.check_chosen(chosen)

@@ -29,6 +29,8 @@ class Source(NamedTuple):
         data: Folder of the sets; None for that of COSTEER_DATA.
         resample: Bring tables of another rate to 60 Hz.
         told: How tables are to be read.
+        scenario: That simulated drivers drive in; None for the published road at
+            several speeds.
     """
 
     files: list[Path]
@@ -38,6 +40,7 @@ class Source(NamedTuple):
     data: Path | None
     resample: bool = False
     told: Told = AS_FOUND
+    scenario: str | None = None
 
 
 class Chosen(NamedTuple):
@@ -100,8 +103,13 @@ def check_source(source: Source) -> None:
         raise ValueError(
             f"{' and '.join(given)} are different recordings; judge on one of them"
         )
-    if source.seed is not None and source.simulate is None:
-        raise ValueError("--seed is of simulated drivers; add --simulate N")
+    for name, value in (("--seed", source.seed), ("--scenario", source.scenario)):
+        if value is not None and source.simulate is None:
+            raise ValueError(f"{name} is of simulated drivers; add --simulate N")
+    if source.scenario is not None:
+        from costeer.scenarios.reading import scenario_named
+
+        scenario_named(source.scenario)
     if source.data is not None and source.dataset is None:
         raise ValueError("--data is the folder of --dataset; add --dataset NAME")
     if source.resample and not source.files:
@@ -142,7 +150,7 @@ def read_source(source: Source) -> list[Recording]:
         seed = 1 if source.seed is None else source.seed
         with progress("simulated drivers", source.simulate) as advance:
             return simulate_recordings(
-                source.simulate, seed, jobs, advance, FIRST_UNSEEN
+                source.simulate, seed, jobs, advance, FIRST_UNSEEN, source.scenario
             )
     if source.dataset is not None:
         from costeer.training.datasets.catalogue import read_dataset
@@ -180,12 +188,15 @@ def judge(
     weights = None if chosen.weights is None else str(chosen.weights)
     judged = any_predictor(chosen.predictor, weights)
     assessment = assess(judged, seen, _asked(chosen), parameters)
-    facts = {"missing_signals": lacks, **assessment_facts(assessment)}
+    where = {} if source.simulate is None else {"scenario": scenario_told(source)}
+    facts = {**where, "missing_signals": lacks, **assessment_facts(assessment)}
+    there = f", scenario {scenario_told(source)}" if source.scenario else ""
     if chosen.predictor != OURS:
-        return Result(judged.title, _told(source), facts, assessment, {})
+        title = judged.title + there
+        return Result(title, _told(source), facts, assessment, {})
     network = load_weights(chosen.weights)
     return Result(
-        title=f"Network {network.hash[:12]}",
+        title=f"Network {network.hash[:12]}{there}",
         source=_told(source),
         facts={"intention_model_hash": network.hash, **facts},
         assessment=assessment,
@@ -206,10 +217,18 @@ def _told(source: Source) -> str:
     """What is judged on, in words."""
     if source.simulate is not None:
         seed = 1 if source.seed is None else source.seed
-        return f"{source.simulate} simulated drivers of seed {seed}"
+        there = f" in scenario {scenario_told(source)}" if source.scenario else ""
+        return f"{source.simulate} simulated drivers of seed {seed}{there}"
     if source.dataset is not None:
         return f"the set {source.dataset}"
     return "files " + ", ".join(file.name for file in source.files)
+
+
+def scenario_told(source: Source) -> str:
+    """Name of the scenario that simulated drivers drive in."""
+    from costeer.scenarios.reading import scenario_named
+
+    return scenario_named(source.scenario or "expressway").name
 
 
 def missing_signals(recordings: Sequence[Recording]) -> list[dict[str, Any]]:

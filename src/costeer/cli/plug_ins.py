@@ -35,6 +35,15 @@ Scenario = Annotated[
         "FILE.yaml."
     ),
 ]
+Mistakes = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--mistake",
+        metavar="NAME[=SIZE]",
+        help="Made on purpose, as late-trigger=0.8; may be repeated. `costeer scenario "
+        "mistakes` lists them.",
+    ),
+]
 Length = Annotated[
     float | None,
     typer.Option(show_default="of the scenario", help="Of the course [m]."),

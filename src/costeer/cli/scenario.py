@@ -11,6 +11,7 @@ from costeer.cli.units import parse_speed
 
 _USES = {
     "list": frozenset[str](),
+    "mistakes": frozenset[str](),
     "show": frozenset({"TARGET"}),
     "preview": frozenset({"TARGET", "--out"}),
     "export": frozenset({"TARGET", "--out"}),
@@ -22,7 +23,9 @@ _USES = {
 
 
 def scenario(
-    action: Annotated[str, typer.Argument(help="list, show, preview, new or export.")],
+    action: Annotated[
+        str, typer.Argument(help="list, show, preview, new, export; mistakes.")
+    ],
     target: Annotated[
         str | None,
         typer.Argument(help="Name or FILE.yaml; with new the FILE.yaml to write."),
@@ -64,10 +67,12 @@ def scenario(
     """List, show, draw, make and export scenarios: roads, other cars, events.
 
     A scenario is a short YAML file; `new` writes one to fill in, on a straight road,
-    after one that ships with costeer, or on a road of an OpenDRIVE file.
+    after one that ships with costeer, or on a road of an OpenDRIVE file. `mistakes`
+    lists what can go wrong on purpose, in a scenario or by --mistake.
 
     Example:
         costeer scenario list
+        costeer scenario mistakes
         costeer scenario show cut-in
         costeer scenario preview expressway-curves --out out/curves.svg
         costeer scenario new mine.yaml --from cut-in
@@ -88,6 +93,8 @@ def scenario(
     _check(action, {name for name, value in given.items() if value})
     if action == "list":
         actions.show_all()
+    elif action == "mistakes":
+        actions.show_mistakes()
     elif action == "show":
         actions.show_one(target or "")
     elif action == "preview":

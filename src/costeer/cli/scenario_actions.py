@@ -13,6 +13,7 @@ from costeer.cli.console import note, print_table
 from costeer.scenarios.definition import Scenario, curvature_of
 from costeer.scenarios.faults import fastest, faults_of_speed
 from costeer.scenarios.limits import LIMITS
+from costeer.scenarios.mistakes import MISTAKES
 from costeer.scenarios.reading import (
     checked,
     parsed,
@@ -32,6 +33,20 @@ def show_all() -> None:
         ["name", "about", "road", "other cars", "speed"],
         [_row(scenario_named(name)) for name in shipped()],
     )
+
+
+def show_mistakes() -> None:
+    """Print all mistakes with their usual sizes and ranges."""
+    rows = []
+    for name, kind in MISTAKES.items():
+        unit = "" if kind.unit in ("", "-") else f" {kind.unit}"
+        numbers = (f"{n:.4g}" for n in (kind.size, kind.low, kind.high))
+        size, low, high = numbers if kind.unit else ("", "", "")
+        about = kind.about.format("SIZE")
+        rows.append(
+            [name, kind.whose, f"{size}{unit if size else ''}", low, high, about]
+        )
+    print_table(["mistake", "of", "size", "from", "to", "what goes wrong"], rows)
 
 
 def _row(scenario: Scenario) -> list[str]:

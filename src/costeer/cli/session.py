@@ -19,7 +19,8 @@ if TYPE_CHECKING:
     from costeer.sessions.plan import Plan
     from costeer.web.security import Access
     from costeer.web.serving import Running
-    from costeer.web.sessions.desk import Desk, Devices
+    from costeer.web.sessions.desk import Desk
+    from costeer.web.sessions.devices import Devices
 
 ACTIONS = ("new", "run", "status", "export", "withdraw", "power", "rehearse")
 
@@ -227,7 +228,7 @@ def _devices(lab: _Lab, folder: Path) -> Devices:
     """
     from costeer.cli.devices import chosen_head, chosen_wheel
     from costeer.doctor import lab_checks
-    from costeer.web.sessions.desk import Devices
+    from costeer.web.sessions.devices import Devices
 
     chosen = chosen_wheel(lab.wheel)
     return Devices(

@@ -26,6 +26,7 @@ def simulate(
         int, typer.Option(help="Number of the driver in the population.")
     ] = 1,
     scenario: plug_ins.Scenario = "expressway",
+    mistake: plug_ins.Mistakes = None,
     length: plug_ins.Length = None,
     speed: plug_ins.Speed = None,
     car: plug_ins.Car = "default",
@@ -62,6 +63,7 @@ def simulate(
         costeer simulate --out out/a.parquet --driver hands-off --trigger-at 20
         costeer simulate --out out/b.parquet --method my_method.py
         costeer simulate --out out/c.parquet --scenario expressway-curves
+        costeer simulate --out out/d.parquet --mistake late-trigger=0.8
     """
     from costeer.loop.inputs import car_of, driver_of
     from costeer.loop.scenario import TrialSetup
@@ -85,6 +87,7 @@ def simulate(
         trigger_times=tuple(trigger_at or ()),
         events=events,
         initial_offset=initial_offset,
+        mistakes=tuple(mistake or ()),
     )
     simulate_to_file(out, setup, engine)
 

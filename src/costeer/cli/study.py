@@ -38,6 +38,7 @@ def study(
         typer.Option(help="network, or scripted: the driver's decision is known."),
     ] = "network",
     scenario: plug_ins.Scenario = "expressway",
+    mistake: plug_ins.Mistakes = None,
     length: plug_ins.Length = None,
     speed: plug_ins.Speed = None,
     car: plug_ins.Car = "default",
@@ -81,6 +82,7 @@ def study(
             weights=plug_ins.weights_path(weights) or "",
             drivers=tuple(driver or ()),
             parameters=plug_ins.chosen_values(parameters, assignments),
+            mistakes=tuple(mistake or ()),
         )
     )
     _warn_if_unbalanced(settings)

@@ -5,11 +5,12 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from costeer.base import array as xp
-from costeer.base.array import Flag, Real, compiled
+from costeer.base.array import Real, compiled
 from costeer.drivers import (
     decision,
     evasion,
     gaze,
+    indicating,
     longitudinal,
     reliance,
     tracking,
@@ -19,13 +20,15 @@ from costeer.drivers.arm import ArmCommand, ArmParameters, wanted_torque
 from costeer.drivers.decision import DecisionState, Draws
 from costeer.drivers.evasion import Evasion, EvasionParameters, EvasionState
 from costeer.drivers.gaze import GazeDraws, GazeParameters, GazeState
+from costeer.drivers.indicating import IndicatorParameters, IndicatorState
 from costeer.drivers.interface import (
     Action,
     DriverNoise,
     Knowledge,
     Perception,
     Plan,
-    as_leader,
+    leader_in,
+    unless,
 )
 from costeer.drivers.longitudinal import LongitudinalParameters, LongitudinalState
 from costeer.drivers.overtaking import DecisionParameters, Surroundings
@@ -34,7 +37,6 @@ from costeer.drivers.tracking import TrackingParameters, TrackingState
 from costeer.drivers.vision import VisionNoise, VisionParameters, VisionState
 from costeer.plant.parameters import holding_stiffness
 from costeer.plant.road import cruising_lane
-from costeer.plant.traffic import LeaderState
 from costeer.sensing.measurement import Measurement
 
 SLOWEST_SEEN = 5.0
@@ -54,6 +56,7 @@ class DriverParameters(NamedTuple):
         gaze: Glances [SI units]. Source: drivers/gaze.py.
         longitudinal: Speed [SI units]. Source: drivers/longitudinal.py.
         evasion: Emergencies [SI units]. Source: drivers/evasion.py.
+        indicator: When it is set [SI units]. Source: drivers/indicating.py.
 
     Example:
         >>> import costeer
@@ -70,6 +73,7 @@ class DriverParameters(NamedTuple):
     gaze: GazeParameters = GazeParameters()
     longitudinal: LongitudinalParameters = LongitudinalParameters()
     evasion: EvasionParameters = EvasionParameters()
+    indicator: IndicatorParameters = IndicatorParameters()
 
 
 class DriverState(NamedTuple):
@@ -82,6 +86,7 @@ class DriverState(NamedTuple):
     gaze: GazeState
     longitudinal: LongitudinalState
     evasion: EvasionState
+    indicator: IndicatorState
 
 
 @compiled
@@ -96,6 +101,7 @@ def initial_state(parameters: DriverParameters, lateral_position: Real) -> Drive
         gaze=gaze.initial_state(),
         longitudinal=longitudinal.initial_state(),
         evasion=evasion.initial_state(),
+        indicator=indicating.initial_state(),
     )
 
 
@@ -198,13 +204,13 @@ def see(
     """Turn what is seen into an intended steering-wheel angle [rad]."""
     eyes = parameters.vision
     speed = xp.maximum(measurement.longitudinal_velocity, SLOWEST_SEEN)
-    near_distance = speed * eyes.near_time
+    near_distance = xp.minimum(speed * eyes.near_time, eyes.sight)
     wanted = tracking.aim(
         aimed,
         knowledge.alignment,
         measurement.longitudinal_position,
         near_distance,
-        speed * eyes.anticipation_time,
+        xp.minimum(speed * eyes.anticipation_time, eyes.sight),
     )
     new_state, asked = vision.step(
         eyes,
@@ -218,27 +224,6 @@ def see(
     planned = vision.planned_angle(eyes, knowledge.car, speed, wanted.far_curvature)
     moves = xp.minimum(measurement.longitudinal_velocity / SLOWEST_SEEN, 1.0)
     return new_state, (asked + planned) * xp.maximum(moves, 0.0)
-
-
-@compiled
-def leader_in(perception: Perception, direction: Real) -> LeaderState:
-    """The next car in the lane that the driver changes to; none without a change.
-
-    Args:
-        perception: With the cars around.
-        direction: Of the lane change, -1 right, 0 none, +1 left [-].
-    """
-    around = perception.around
-    lane = xp.select(direction > 0.0, around.left, around.right)
-    leader = as_leader(lane.ahead, perception.measurement)
-    changes = direction != 0.0
-    return leader._replace(present=leader.present & changes)
-
-
-@compiled
-def unless(unseen: Flag, leader: LeaderState) -> LeaderState:
-    """The leader, if the driver has had the time to see it."""
-    return leader._replace(present=leader.present & xp.logical_not(unseen))
 
 
 @compiled
@@ -341,6 +326,7 @@ def acted(
             change_duration=decided.change_duration,
             time_to_crossing=decision.time_to_crossing(decided),
         ),
+        indicator=state.indicator.side,
     )
 
 
@@ -388,6 +374,7 @@ def act(
         dt,
     )
     foot = brake(parameters, state, foot, evading, measurement, dt)
+    lever = parameters.indicator, state.indicator, decided, steered
     new_state = DriverState(
         vision=eyes,
         reliance=hands,
@@ -396,5 +383,6 @@ def act(
         gaze=head,
         longitudinal=foot,
         evasion=evaded,
+        indicator=indicating.step(*lever, noise.indicator_uniform, dt),
     )
     return new_state, acted(parameters, new_state, knowledge, measurement, command)

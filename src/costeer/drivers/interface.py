@@ -11,6 +11,7 @@ import math
 from collections.abc import Callable
 from typing import Any, Generic, NamedTuple, TypeVar
 
+from costeer.base import array as xp
 from costeer.base.array import Flag, Real, compiled
 from costeer.base.sources import source_hash
 from costeer.drivers.arm import ArmCommand
@@ -80,6 +81,27 @@ def as_leader(ahead: Ahead, measurement: Measurement) -> LeaderState:
     )
 
 
+@compiled
+def leader_in(perception: Perception, direction: Real) -> LeaderState:
+    """The next car in the lane that the driver changes to; none without a change.
+
+    Args:
+        perception: With the cars around.
+        direction: Of the lane change, -1 right, 0 none, +1 left [-].
+    """
+    around = perception.around
+    lane = xp.select(direction > 0.0, around.left, around.right)
+    leader = as_leader(lane.ahead, perception.measurement)
+    changes = direction != 0.0
+    return leader._replace(present=leader.present & changes)
+
+
+@compiled
+def unless(unseen: Flag, leader: LeaderState) -> LeaderState:
+    """The leader, if the driver has had the time to see it."""
+    return leader._replace(present=leader.present & xp.logical_not(unseen))
+
+
 class DriverNoise(NamedTuple):
     """Random numbers of one control step: standard normal, `_uniform` in [0, 1).
 
@@ -101,6 +123,7 @@ class DriverNoise(NamedTuple):
     leader_uniform: Real
     tracker_uniform: Real
     abandoned_uniform: Real
+    indicator_uniform: Real
 
 
 NORMAL_DRAWS = 9
@@ -130,6 +153,7 @@ class Action(NamedTuple):
             nobody knows it [-].
         at_home: Whether the driver keeps the cruising lane, which ends an event zone.
         plan: Of the decided lane change, for a scripted intention.
+        indicator: Side that the indicator is set to, -1 right, 0 off, +1 left [-].
     """
 
     arm: ArmCommand
@@ -138,6 +162,7 @@ class Action(NamedTuple):
     intention: Real = 0.0
     at_home: Flag = True
     plan: Plan = Plan()
+    indicator: Real = 0.0
 
 
 class Draw(NamedTuple):

@@ -40,6 +40,7 @@ class VisionParameters(NamedTuple):
         motor_noise: Standard deviation of the intended angle [rad]. Source: assumed,
             as above.
         noise_time: Correlation time of both noises [s]. Source: assumed.
+        sight: How far the road can be seen [m]. Source: assumed, no fog.
     """
 
     far_gain: Real = 3.4
@@ -53,6 +54,7 @@ class VisionParameters(NamedTuple):
     near_noise: Real = 0.008
     motor_noise: Real = 0.0095
     noise_time: Real = 0.35
+    sight: Real = 1000.0
 
 
 class VisionNoise(NamedTuple):

@@ -21,6 +21,7 @@ from costeer.loop.events import (
     lead_of,
     step_events,
 )
+from costeer.loop.mistakes import Heard, MistakeState, given_torque, heard
 from costeer.loop.parameters import DT, LoopParameters
 from costeer.methods.interface import Rule
 from costeer.plant.fleet_motion import World, moved
@@ -41,12 +42,14 @@ class ControlState(NamedTuple, Generic[S]):
         events: Leader and event zone.
         torque_command: Computed at the step before, acts in this one [N·m].
         time: Since the trial began [s].
+        mistakes: Of what goes wrong on purpose.
     """
 
     method: S
     events: EventState
     torque_command: Real
     time: Real
+    mistakes: MistakeState
 
 
 class Seat(NamedTuple):
@@ -103,6 +106,7 @@ def initial_control(
         events=initial_events(parameters.fleet),
         torque_command=0.0,
         time=0.0,
+        mistakes=MistakeState(),
     )
 
 
@@ -183,14 +187,23 @@ def half_step(
         measurement,
     )
     now = state.events._replace(contact=contact)
-    method_state, signals = rule.step(
-        parameters.controller, state.method, measurement, request, DT
-    )
+    request = request._replace(indicator=seat.action.indicator)
     limit = xp.select(parameters.assists > 0.5, parameters.column.torque_limit, 0.0)
+    wrong, road = parameters.mistakes, parameters.road
+    given = wrong, state.mistakes, road, measurement, request, seat.action, state.time
+    truly = Heard(measurement, request, state.mistakes)
+    got = xp.when(wrong.any > 0.5, heard, given, truly)
+    method_state, signals = rule.step(
+        parameters.controller, state.method, got.measurement, got.request, DT
+    )
+    asked = contained(signals.applied_torque, limit)
+    told = wrong, got.memory, measurement.side, asked, limit, state.time
+    same = got.memory, asked
+    memory, command = xp.when(wrong.any > 0.5, given_torque, told, same)
     sample = Sample(
         time=state.time,
         measurement=measurement,
-        request=request,
+        request=got.request,
         signals=signals,
         method=method_state,
         torque_fault=fault_of(signals.applied_torque, limit),
@@ -202,6 +215,7 @@ def half_step(
     return ControlState(
         method=method_state,
         events=moved_events(parameters, now, measurement, seat, state.time),
-        torque_command=contained(signals.applied_torque, limit),
+        torque_command=command,
         time=state.time + DT,
+        mistakes=memory,
     ), sample

@@ -7,6 +7,7 @@ from typing import Any
 
 from costeer.base.array import Real
 from costeer.base.described import Described, described, nearest, with_values
+from costeer.loop.mistakes import believed_car, judged, true_column
 from costeer.loop.parameters import LoopParameters
 from costeer.methods.checked import parameters_of
 from costeer.methods.conditions import Condition
@@ -24,6 +25,7 @@ OPTIONS = {
     "follows_plan": "follows_plan of TrialSetup in Python",
     "plant_steps": "plant_steps of TrialSetup in Python",
     "assists": "--method (in Python method)",
+    "mistakes.any": "the other mistakes",
     "alignment.num_stations": "--scenario (in Python scenario)",
     "fleet.num_places": "--scenario (in Python scenario)",
     "fleet.range": "--scenario (in Python scenario)",
@@ -75,8 +77,8 @@ def built(
 ) -> LoopParameters[Any]:
     """All parameters of a trial with some set by name.
 
-    The method is made for car, column and road as they are set; what is set of the
-    method itself comes last.
+    The method is made for car, column and road as they are set, unless it is mistaken
+    about them; what is set of the method itself comes last.
 
     Args:
         world: Parameters without those of the method.
@@ -96,10 +98,12 @@ def built(
     own = {name: v for name, v in named.items() if name.startswith(METHOD)}
     others = {name: v for name, v in named.items() if name not in own}
     around = with_values(world, others)
-    controller = parameters_of(
-        method, condition, around.car, around.column, around.road
-    )
-    return with_values(around._replace(controller=controller), own)
+    around = around._replace(mistakes=judged(around.mistakes))
+    known = believed_car(around.mistakes, around.car)
+    controller = parameters_of(method, condition, known, around.column, around.road)
+    column = true_column(around.mistakes, around.column)
+    built = around._replace(controller=controller, column=column)
+    return with_values(built, own)
 
 
 def full_names(

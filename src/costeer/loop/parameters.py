@@ -6,6 +6,8 @@ from typing import Any, Generic, NamedTuple, TypeVar
 
 from costeer.base.array import Real
 from costeer.drivers.driver import DriverParameters
+from costeer.loop.clock import DT as DT
+from costeer.loop.mistakes import MistakeParameters
 from costeer.plant.alignment import STRAIGHT, Alignment
 from costeer.plant.fleet import NO_FLEET, FleetParameters
 from costeer.plant.following import FollowingParameters
@@ -15,9 +17,6 @@ from costeer.plant.traffic import TrafficParameters
 from costeer.sensing.sensors import SensorParameters
 
 P = TypeVar("P")
-
-DT = 1.0 / 60.0
-"""Control step [s]."""
 
 
 class StartParameters(NamedTuple):
@@ -57,6 +56,7 @@ class LoopParameters(NamedTuple, Generic[P]):
         alignment: How the road runs [SI units]. Source: the scenario.
         fleet: The other cars [SI units]. Source: the scenario.
         stretches: What happens along the road [SI units]. Source: the scenario.
+        mistakes: What goes wrong [SI units]. Source: the scenario.
     """
 
     controller: P
@@ -74,3 +74,4 @@ class LoopParameters(NamedTuple, Generic[P]):
     alignment: Alignment = STRAIGHT
     fleet: FleetParameters = NO_FLEET
     stretches: Stretches = NOTHING_HAPPENS
+    mistakes: MistakeParameters = MistakeParameters()

@@ -55,6 +55,7 @@ class PersonInput(NamedTuple):
         crossing_probability: Of the network; NaN for no verdict [-].
         requested: A lane change asked for from outside.
         leader_uniform: Sets the next leader's speed, in [0, 1) [-].
+        indicator: Side that it is set to, -1 right, 0 off, +1 left [-].
     """
 
     intended_angle: Real
@@ -66,6 +67,7 @@ class PersonInput(NamedTuple):
     crossing_probability: Real
     requested: Flag
     leader_uniform: Real
+    indicator: Real = 0.0
 
 
 class PersonMotion(NamedTuple):
@@ -176,6 +178,7 @@ def seated(
             head_yaw=given.head_yaw,
             intention=math.nan,
             at_home=at_home(parameters.road, measurement),
+            indicator=given.indicator,
         ),
         leader_uniform=given.leader_uniform,
         motor_torque=motion.plant.world.column.motor_torque,

@@ -33,6 +33,12 @@ from costeer.plant.parameters import (
     RoadParameters,
 )
 from costeer.scenarios.definition import Scenario
+from costeer.scenarios.mistakes import (
+    Mistake,
+    parsed_mistakes,
+    values_of,
+    wrong_in,
+)
 from costeer.scenarios.reading import scenario_named
 from costeer.scenarios.world import Draw, world_of
 
@@ -87,6 +93,8 @@ class TrialSetup(NamedTuple):
             `("guidance.lateral_error_gain", 3.0)`; see `costeer parameters`.
         scenario: Road, other cars and events: a name, a file or itself
             (`scenarios.reading`).
+        mistakes: What goes wrong on purpose besides what the scenario says:
+            `late-trigger` or `late-trigger=0.8` (`scenarios.mistakes`).
     """
 
     participant: int = 1
@@ -112,6 +120,7 @@ class TrialSetup(NamedTuple):
     wander_factor: Real = 1.0
     parameters: tuple[tuple[str, Real], ...] = ()
     scenario: str | Scenario = "expressway"
+    mistakes: tuple[str, ...] = ()
 
 
 SLOWEST = 12.0
@@ -281,6 +290,35 @@ def _check_unused(setup: TrialSetup, model: AnyDriver) -> None:
             )
 
 
+def trial_mistakes(setup: TrialSetup) -> tuple[Mistake, ...]:
+    """What goes wrong on purpose: of the scenario, and of the setup.
+
+    Raises:
+        ValueError: If one is not known, out of range, or stands twice.
+    """
+    mistakes = scenario_named(setup.scenario).mistakes + parsed_mistakes(setup.mistakes)
+    for _, text in wrong_in(mistakes):
+        raise ValueError(text)
+    return mistakes
+
+
+def _wrong_values(setup: TrialSetup) -> dict[str, Real]:
+    """What the mistakes set by name.
+
+    Raises:
+        ValueError: If the driver has no such parameter.
+    """
+    values = values_of(trial_mistakes(setup))
+    virtual = trial_driver_model(setup) is VIRTUAL or setup.driver == HANDS_OFF
+    for mistake in () if virtual else trial_mistakes(setup):
+        if any(name.startswith("driver.") for name in values_of([mistake])):
+            raise ValueError(
+                f"mistake {mistake.kind} is one of costeer's virtual drivers; leave it "
+                "out with another driver"
+            )
+    return values
+
+
 def _check_road(road: RoadParameters) -> None:
     """Refuse a road on which nobody could change lanes.
 
@@ -328,7 +366,8 @@ def loop_parameters(setup: TrialSetup) -> LoopParameters[Any]:
         plant_steps=setup.plant_steps,
     )
     chosen, driven = method_named(setup.method), trial_method(setup)
-    condition, values = trial_condition(setup), dict(setup.parameters)
+    condition = trial_condition(setup)
+    values = _wrong_values(setup) | dict(setup.parameters)
     parameters = built(world, chosen, condition, values)
     _check_road(parameters.road)
     if driven is chosen:

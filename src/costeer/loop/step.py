@@ -115,6 +115,7 @@ def seen_head(
     """What the tracker says at a position along the road [m], if it is not lost."""
     stretch, lasts = stretch_at(parameters.stretches, position)
     lost = lasts & (stretch.head_lost > 0.5)
+    lost = lost | (parameters.mistakes.head_lost > 0.5)
     return head._replace(valid=head.valid & xp.logical_not(lost))
 
 

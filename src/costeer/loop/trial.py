@@ -40,6 +40,7 @@ from costeer.loop.scenario import (
     trial_condition,
     trial_driver_model,
     trial_method,
+    trial_mistakes,
 )
 from costeer.loop.tick import Network, Script
 from costeer.methods.interface import Method, method_sources
@@ -48,6 +49,7 @@ from costeer.records import metadata as kinds
 from costeer.records.cars import car_columns
 from costeer.records.columns import TrialRecord, with_method_columns
 from costeer.records.row import ROW_COLUMNS, record_columns
+from costeer.scenarios import mistakes
 from costeer.scenarios.reading import scenario_named
 
 SLOWEST_SHARE = 0.5
@@ -211,6 +213,14 @@ def trial_metadata(
         "car": setup.car if isinstance(setup.car, str) else "own",
         "speed": setup.speed,
         "scenario": scenario_metadata(setup),
+        "mistakes": [
+            {
+                "kind": each.kind,
+                "size": mistakes.size_of(each),
+                "about": mistakes.described(each),
+            }
+            for each in trial_mistakes(setup)
+        ],
         "driver": _driver_text(setup, driver),
         "driver_source_hash": driver_sources(driver),
         "predictor": None if predictor is None else predictor.name,

@@ -21,7 +21,7 @@ from costeer.base.judged import (
 )
 from costeer.controller.signals import Assistance, Request
 from costeer.methods.conditions import CONDITIONS, Condition
-from costeer.methods.interface import Method, Tunable
+from costeer.methods.interface import Method, Tunable, usual_parameters
 from costeer.plant.parameters import CarParameters, ColumnParameters, RoadParameters
 from costeer.records.columns import METHOD_PREFIX, Column
 from costeer.sensing.measurement import standing_start
@@ -130,6 +130,34 @@ def _check_step(method: Method[Any, Any], parameters: Any) -> None:
             f"{name} asks for {torque:g} N·m although assists is False; set assists to "
             "True, or ask for none"
         )
+
+
+@cache
+def hears_triggers(method: Method[Any, Any]) -> bool:
+    """Whether a method does anything about a trigger or an indicator.
+
+    It is asked, not read: with and without both for four seconds, in a car that runs
+    straight. Who hears neither cannot be told a false, late or missing one.
+    """
+    measurement = standing_start(RoadParameters())
+    asked = Request(crossing_probability=1.0, indicator=measurement.side)
+    parameters = usual_parameters(method)
+
+    def after(request: Request) -> str:
+        state = method.initial_state(parameters, measurement.lane)
+        assistance = Assistance()
+        for _ in range(_TRIED_STEPS):
+            state, assistance = method.step(
+                parameters, state, measurement, request, _DT
+            )
+        # As text: not a number is then equal to itself.
+        return repr((assistance.target.lane, assistance.applied_torque))
+
+    return after(asked) != after(Request())
+
+
+_TRIED_STEPS = 240
+"""Four seconds: the longest that a rule for indicators waits, and some more."""
 
 
 def _check_columns(method: Method[Any, Any]) -> None:

@@ -148,6 +148,13 @@ def _measured(
     return _number(name, unit, description, f"measurement.{name}", mirrored)
 
 
+def _code(
+    name: str, description: str, source: str, mirrored: Mirrored = "same"
+) -> Column:
+    column = Column(name, "-", "int8", description, source, mirrored=mirrored)
+    return column._replace(stepped=True)
+
+
 def _guidance(
     name: str, unit: str, description: str, source: str, mirrored: Mirrored = "same"
 ) -> Column:
@@ -164,14 +171,11 @@ COLUMNS: tuple[Column, ...] = (
         "from the left lane's centre, left positive",
         "reflected",
     ),
-    Column(
+    _code(
         "lane",
-        "-",
-        "int8",
         "lane of the centre of gravity: 0 right, 1 left",
         "measurement.lane",
-        stepped=True,
-        mirrored="swapped",
+        "swapped",
     ),
     Column(
         "target_lane",
@@ -290,36 +294,22 @@ COLUMNS: tuple[Column, ...] = (
         stepped=True,
         labels=MODES,
     ),
-    Column(
+    _code(
         "event",
-        "-",
-        "int8",
         "0, or the number of the overtaking event the car is in",
         "events.event",
-        stepped=True,
     ),
-    Column(
+    _code(
         "driver_intention",
-        "-",
-        "int8",
         "-1 right, 0 none, +1 left; null for people",
         "action.intention",
-        nullable=True,
-        stepped=True,
-        mirrored="flipped",
-    ),
+        "flipped",
+    )._replace(nullable=True),
     _number("lead_distance", "m", "to the leader; NaN without one", "lead.distance"),
     _number("lead_velocity", "m/s", "of the leader; NaN without one", "lead.velocity"),
-    Column(
-        "lead_lane",
-        "-",
-        "int8",
-        "lane of the leader; null without one",
-        "lead.lane",
-        nullable=True,
-        stepped=True,
-        mirrored="swapped",
-    ),
+    _code(
+        "lead_lane", "lane of the leader; null without one", "lead.lane", "swapped"
+    )._replace(nullable=True),
     _guidance(
         "target_lateral_position",
         "m",
@@ -360,6 +350,12 @@ COLUMNS: tuple[Column, ...] = (
         stepped=True,
         before=0.0,
     ),
+    _code(
+        "driver_indicator",
+        "set by the driver: -1 right, 0 off, +1 left",
+        "action.indicator",
+        "flipped",
+    )._replace(before=0.0),
 )
 
 COLUMN_NAMES: tuple[str, ...] = tuple(column.name for column in COLUMNS)

@@ -84,6 +84,7 @@ class Controls(NamedTuple):
         crossing_probability: Of the network; NaN for no verdict [-].
         requested: A lane change asked for by the indicator.
         leader_uniform: Sets the next leader's speed [-].
+        indicator: Side that it is set to, -1 right, 0 off, +1 left [-].
     """
 
     steer: float = 0.0
@@ -95,6 +96,7 @@ class Controls(NamedTuple):
     crossing_probability: float = math.nan
     requested: bool = False
     leader_uniform: float = 0.0
+    indicator: float = 0.0
 
 
 class Cabin:
@@ -259,6 +261,7 @@ class Cabin:
             crossing_probability=controls.crossing_probability,
             requested=controls.requested,
             leader_uniform=controls.leader_uniform,
+            indicator=controls.indicator,
         )
 
     def _pedals(self, controls: Controls) -> tuple[float, float]:

@@ -160,6 +160,7 @@ class Driving:
             crossing_probability=self._verdict(),
             requested=self._requests(),
             leader_uniform=float(self._draws[self._leaders % len(self._draws)]),
+            indicator=float(self._indicator.side),
         )
 
     def _sees_head(self, now: float) -> bool:
@@ -333,8 +334,15 @@ class Driving:
         if self._run_state == RunState.PAUSED:
             self._begin("resumed")
 
-    def _begin(self, kind: Kind) -> None:
-        """Run, if wheel and numbers allow it."""
+    def _do_acknowledge(self) -> None:
+        """Take a fault as mended, if it is; who drives may go on."""
+        if self._fault.must_be_acknowledged or not self._fault.can_resume:
+            self._make_ready()
+            self._fault = Fault.ACKNOWLEDGED
+            self._mark(Marker("fault", Fault.ACKNOWLEDGED.word))
+
+    def _make_ready(self) -> None:
+        """Have a wheel that is there and watched, or say what is wrong."""
         self._forget_stall()
         if self._bay.is_empty:
             self._bay.find()
@@ -344,6 +352,14 @@ class Driving:
         if not self._fault.can_resume:
             raise ValueError(self._fault.text)
         self._cabin.check_wheel()
+
+    def _begin(self, kind: Kind) -> None:
+        """Run, if wheel and numbers allow it and no fault waits for a word."""
+        if self._is_released():
+            self._break_off(Fault.STALLED)
+        if self._fault.must_be_acknowledged:
+            raise ValueError(f"{self._fault.text} Then say that it is mended.")
+        self._make_ready()
         self._fault = Fault.NONE
         self._cabin.meet_wheel()
         self._run_state = RunState.RUNNING

@@ -57,6 +57,9 @@ class RunState(_Named):
 class Fault(_Named):
     """What is wrong; each pauses a running trial at once and takes the torque off.
 
+    Torque never comes back by the key with which drives begin alone: somebody has to
+    say first that the fault was seen and mended (`ACKNOWLEDGED`).
+
     Attributes:
         text: For people: what it is, and the way out.
         can_resume: Whether the same trial can go on; else it must be begun anew.
@@ -71,6 +74,16 @@ class Fault(_Named):
         fault._value_ = number
         fault.text, fault.can_resume = text, can_resume
         return fault
+
+    @property
+    def must_be_acknowledged(self) -> bool:
+        """Whether nobody goes on before someone has said that it is mended.
+
+        A page that was closed or hidden needs nothing: nothing is broken, and who
+        presses the key sits before it again.
+        """
+        free = ("NONE", "PAGE_LOST", "ACKNOWLEDGED")
+        return self.can_resume and self.name not in free
 
     NONE = 0, ""
     WHEEL_LOST = 1, "The steering wheel was lost. Plug it in again."
@@ -102,6 +115,7 @@ class Fault(_Named):
         False,
     )
     RECORD_MENDED = 9, "The record can be written again."
+    ACKNOWLEDGED = 11, "What was wrong is mended."
     LOOP_GONE = (
         6,
         "The real-time process has ended. Start costeer drive again.",
@@ -186,6 +200,7 @@ def page_tables() -> dict[str, object]:
                 "name": each.word,
                 "text": each.text,
                 "can_resume": each.can_resume,
+                "must_be_acknowledged": each.must_be_acknowledged,
             }
             for each in Fault
         ],

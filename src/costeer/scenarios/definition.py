@@ -12,6 +12,8 @@ import math
 import re
 from typing import NamedTuple
 
+from costeer.scenarios.mistakes import Mistake
+
 KINDS = {"car": (4.5, 1.8), "truck": (12.0, 2.5), "obstacle": (1.0, 1.75)}
 """Kinds of actors, with length and width [m]. Sources: assumed; an obstacle is half a
 lane wide."""
@@ -213,6 +215,7 @@ class Scenario(NamedTuple):
         zones: Stretches for measures.
         after_collision: What a trial does after a collision: "end", or "restart" where
             a person drives.
+        mistakes: What goes wrong on purpose.
 
     Example:
         >>> import costeer
@@ -234,6 +237,7 @@ class Scenario(NamedTuple):
     events: tuple[Event, ...] = ()
     zones: tuple[Zone, ...] = ()
     after_collision: str = "end"
+    mistakes: tuple[Mistake, ...] = ()
 
 
 def speed_of(text: str) -> float:

@@ -25,6 +25,7 @@ from costeer.scenarios.definition import (
     speed_of,
 )
 from costeer.scenarios.limits import Fault, Place, out_of_range
+from costeer.scenarios.mistakes import wrong_in
 
 FASTEST_CORNERING = 3.0
 """Lateral acceleration above which a curve is too tight for its speed [m/s²]: tyres and
@@ -45,6 +46,8 @@ def faults(scenario: Scenario) -> Iterator[Fault]:
     yield from of_actors(scenario)
     yield from _of_events(scenario)
     yield from _of_zones(scenario)
+    for place, text in wrong_in(scenario.mistakes):
+        yield Fault(("mistakes", place), text)
 
 
 def _of_names(scenario: Scenario) -> Iterator[Fault]:

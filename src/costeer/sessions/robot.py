@@ -267,7 +267,9 @@ class Robot:
                 self.server.ask(
                     "/api/session/next", {"participant": self._who, "step": step["id"]}
                 )
-        if stands in ("ready", "paused") and frame.count():
+        if step["drive"].get("is_broken"):
+            self.server.console("acknowledge")
+        elif stands in ("ready", "paused") and frame.count():
             inside = self._page.frame_locator("iframe:not([inert])").locator("body")
             inside.press("Enter", timeout=5000)
             time.sleep(0.4)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from costeer.devices.head.calibration import calibration_file
 from costeer.sessions.session import Session
 from costeer.sessions.store import OF_PEOPLE
 
@@ -14,7 +15,9 @@ ROOMS = ("records", "practice", "aborted")
 def withdraw(session: Session, participant: str) -> int:
     """Delete all of a participant: rows, files, free pages; a count stays.
 
-    Tables and report in the folder go too; `costeer report` makes them again.
+    Tables and report in the folder go too; `costeer report` makes them again. So does
+    the calibration of the head under this pseudonym, which lies with the user's own
+    files and not in the study.
 
     Returns:
         How many files were deleted.
@@ -32,8 +35,8 @@ def withdraw(session: Session, participant: str) -> int:
 
 
 def files_of(session: Session, participant: str) -> list[Path]:
-    """Every file of a participant's drives, streams and traces too."""
-    found: list[Path] = []
+    """Every file of a participant: drives, streams, traces, the head's calibration."""
+    found = [calibration_file(participant)]
     for room in ROOMS:
         found += sorted((session.folder / room).glob(f"{participant}-*"))
     return [file for file in found if file.is_file()]

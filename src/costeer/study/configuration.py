@@ -6,15 +6,12 @@ run at once and whether a report is written are not part of it.
 
 from __future__ import annotations
 
-import hashlib
 from collections.abc import Mapping
-from functools import cache
 from importlib.metadata import version
-from pathlib import Path
 from typing import Any, NamedTuple
 
 from costeer.base.described import described
-from costeer.base.entry import COMPILED_ROOMS
+from costeer.base.entry import simulation_source
 from costeer.controller.step import ControllerParameters
 from costeer.drivers.checked import checked_driver
 from costeer.drivers.driver import DriverParameters
@@ -71,6 +68,7 @@ class StudySettings(NamedTuple):
         drivers: Drivers or their files, who take turns; none: the population.
         parameters: Dotted names of parameters and the values they are given.
         scenario: Road, other cars and events: a name, a YAML file, or itself.
+        mistakes: Made on purpose besides those of the scenario, as `latency=0.05`.
     """
 
     participants: int = 12
@@ -86,6 +84,7 @@ class StudySettings(NamedTuple):
     drivers: tuple[str | Driver, ...] = ()
     parameters: tuple[tuple[str, float], ...] = ()
     scenario: str | Scenario = PUBLISHED_SCENARIO
+    mistakes: tuple[str, ...] = ()
 
 
 PUBLISHED_STUDY = StudySettings()
@@ -125,6 +124,7 @@ def _plain_settings(settings: StudySettings) -> StudySettings:
         weights=plain_text("weights", settings.weights),
         car=plain_part("car", settings.car, CarParameters),
         drivers=tuple(map(_plain_driver, settings.drivers)),
+        mistakes=tuple(map(str, settings.mistakes)),
         parameters=plain_values(settings.parameters),
         scenario=_plain_scenario(settings.scenario),
     )
@@ -171,6 +171,7 @@ def trial_setup(settings: StudySettings, trial: Trial) -> TrialSetup:
         weights=settings.weights or None,
         parameters=settings.parameters,
         scenario=settings.scenario,
+        mistakes=settings.mistakes,
     )
 
 
@@ -239,8 +240,7 @@ def study_configuration(settings: StudySettings) -> dict[str, object]:
     """
     method = method_named(settings.method)
     given = settings._asdict()
-    # A study on the published road says nothing of it, as before there were others.
-    del given["scenario"]
+    del given["scenario"], given["mistakes"]  # told below, if unusual
     given |= {
         "method": settings.method if isinstance(settings.method, str) else method.name,
         "conditions": list(settings.conditions),
@@ -261,14 +261,14 @@ def study_configuration(settings: StudySettings) -> dict[str, object]:
 
 
 def _scenario(settings: StudySettings) -> dict[str, object]:
-    """The scenario by name or file, and what is in it."""
-    given = settings.scenario
-    if given == PUBLISHED_SCENARIO:
-        return {}
-    return {
-        "scenario": given if isinstance(given, str) else OWN,
-        "scenario_content": plain(scenario_named(given)),
-    }
+    """The scenario by name or file, what is in it, and mistakes made besides."""
+    told: dict[str, object] = {}
+    if settings.mistakes:
+        told["mistakes"] = list(settings.mistakes)
+    if (given := settings.scenario) != PUBLISHED_SCENARIO:
+        told["scenario"] = given if isinstance(given, str) else OWN
+        told["scenario_content"] = plain(scenario_named(given))
+    return told
 
 
 def _named(part: str | CarParameters | Driver) -> str:
@@ -363,7 +363,7 @@ def settings_of(configuration: dict[str, Any]) -> StudySettings:
         raise ValueError(f"the configuration lacks {', '.join(missing)}")
     # Any: each setting has a type of its own.
     chosen: dict[str, Any] = {n: configuration.get(n, usual[n]) for n in usual}
-    chosen["drivers"] = tuple(chosen["drivers"])
+    chosen |= {n: tuple(chosen[n]) for n in ("drivers", "mistakes")}
     if "scenario_content" in configuration:
         chosen["scenario"] = scenario_of(configuration["scenario_content"])
     chosen["parameters"] = tuple(dict(chosen["parameters"]).items())
@@ -380,20 +380,3 @@ def driving_order(settings: StudySettings) -> list[list[str]]:
     for trial in plan_trials(settings.participants, settings.conditions):
         order[trial.participant - 1].append(trial.condition)
     return order
-
-
-@cache
-def simulation_source() -> str:
-    """Return a hash of all files that decide what a simulated trial is.
-
-    The version alone would let a study be finished with other equations than it was
-    begun with, after an edit in a checkout.
-    """
-    package = Path(__file__).parents[1]
-    digest = hashlib.sha256()
-    for room in (*COMPILED_ROOMS, "scenarios"):
-        for file in sorted((package / room).rglob("*")):
-            if file.is_file() and file.suffix != ".pyc":
-                digest.update(file.relative_to(package).as_posix().encode())
-                digest.update(file.read_bytes())
-    return digest.hexdigest()[:16]

@@ -194,6 +194,8 @@ def _objects(settings: StudySettings) -> list[str]:
 
 def _option(name: str, value: Any) -> list[str]:  # Any: of a setting
     """A setting as words of the command line."""
+    if name == "mistakes":
+        return [word for each in value for word in ("--mistake", each)]
     if name == "drivers":
         return [word for file in value for word in ("--driver", file)]
     if name == "parameters":

@@ -12,6 +12,8 @@ from concurrent.futures import ThreadPoolExecutor
 
 from costeer.loop.scenario import TrialSetup
 from costeer.loop.trial import simulate_trial
+from costeer.scenarios.definition import Scenario
+from costeer.scenarios.reading import chosen
 from costeer.training.recordings import Recording, recordings_of
 
 FIRST_PARTICIPANT = 100_001
@@ -82,6 +84,7 @@ def simulate_recordings(
     jobs: int = 1,
     progress: Callable[[int], None] | None = None,
     first: int = FIRST_PARTICIPANT,
+    scenario: str | Scenario | None = None,
 ) -> list[Recording]:
     """Manual trials, one each, of other drivers than any study.
 
@@ -92,6 +95,20 @@ def simulate_recordings(
         progress: Told after each trial.
         first: Number of the first driver: those from `FIRST_PARTICIPANT` on are to
             learn from, those from `FIRST_UNSEEN` on are in no training.
+        scenario: Driven in, at its own length and speed; None for the published road
+            at `SPEEDS_KMH`.
+
+    Raises:
+        ValueError: If there is no such scenario.
+        OSError: If its file cannot be read.
     """
     setups = [manual_setup(first + i, seed, i) for i in range(num_drivers)]
+    if scenario is not None:
+        there = chosen(scenario, None, None)
+        setups = [
+            each._replace(
+                scenario=there.scenario, length=there.length, speed=there.speed
+            )
+            for each in setups
+        ]
     return simulate_setups(setups, jobs, progress)

@@ -39,6 +39,7 @@ from costeer.runtime.setup import (
 from costeer.runtime.states import Fault, RunState, page_tables
 from costeer.scenarios.reading import scenario_named
 from costeer.web.messages import (
+    Acknowledge,
     Indicator,
     Input,
     Latency,
@@ -72,11 +73,13 @@ class PageOptions(NamedTuple):
         input: "keyboard", "gamepad" or "wheel".
         show_signals: Whether a driver's page may show the live signals.
         driver_starts: Whether a driver's page may start the drive.
+        driver_acknowledges: Whether a driver's page may say that a fault is mended.
     """
 
     input: str = "keyboard"
     show_signals: bool = True
     driver_starts: bool = True
+    driver_acknowledges: bool = True
 
 
 class DriveOnPages:
@@ -232,10 +235,9 @@ class DriveOnPages:
                 self.drive.press(*message)
         elif isinstance(message, Latency):
             self.latencies.extend(message.values)
-        elif isinstance(message, Start | Resume | Restart):
-            is_start = isinstance(message, Start) and role == "driver"
-            if is_start and not self._options.driver_starts:
-                raise ValueError("the experimenter starts this drive; please wait")
+        elif isinstance(message, Start | Resume | Restart | Acknowledge):
+            if role == "driver":
+                self._check_driver(message)
             self.drive.send(type(message).__name__.lower())
         elif isinstance(message, Pause):
             self.drive.send("pause", role)
@@ -244,6 +246,17 @@ class DriveOnPages:
         else:
             self._choose(message)
         return None
+
+    def _check_driver(self, message: Message) -> None:
+        """Refuse what in this drive is the experimenter's to say.
+
+        Raises:
+            ValueError: If it is.
+        """
+        if isinstance(message, Start) and not self._options.driver_starts:
+            raise ValueError("the experimenter starts this drive; please wait")
+        if isinstance(message, Acknowledge) and not self._options.driver_acknowledges:
+            raise ValueError("the experimenter looks after this; please wait")
 
     def _choose(self, message: Message) -> None:
         """What only the experimenter may ask.

@@ -61,6 +61,10 @@ class Resume(NamedTuple):
     """Go on after a pause."""
 
 
+class Acknowledge(NamedTuple):
+    """A fault was seen, and what was wrong is mended."""
+
+
 class Indicator(NamedTuple):
     """The indicator's lever: -1 right, 0 off, +1 left."""
 
@@ -94,7 +98,17 @@ class Stop(NamedTuple):
 
 
 Message = (
-    Input | Ping | Start | Pause | Resume | Indicator | Latency | Set | Restart | Stop
+    Input
+    | Ping
+    | Start
+    | Pause
+    | Resume
+    | Acknowledge
+    | Indicator
+    | Latency
+    | Set
+    | Restart
+    | Stop
 )
 
 EXPERIMENTER_ONLY = (Set, Restart, Stop)
@@ -195,6 +209,7 @@ _KINDS: dict[str, _Kind] = {
     "start": _Kind(Start, {}),
     "pause": _Kind(Pause, {}),
     "resume": _Kind(Resume, {}),
+    "acknowledge": _Kind(Acknowledge, {}),
     "indicator": _Kind(Indicator, {"side": _whole(-1, 1)}),
     "latency": _Kind(Latency, {"values": _latencies}),
     "set": _Kind(Set, {"name": _name, "value": _choice}),

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from costeer.runtime.states import Fault
 from costeer.sessions.questionnaires.texts import load_texts
 from tests.web.page.conftest import until, wait_for
 from tests.web.page.stub import Json, Stub, served
@@ -62,7 +63,8 @@ class Driven:
         states = self.stub.tables["run_states"]
         (number,) = [each["code"] for each in states if each["name"] == state]
         self.stub.frame |= {"run_state": float(number), "fault": 0.0}
-        until(self.page, f"costeer.state === '{state}'")
+        arrived = f"costeer.state === '{state}' && costeer.lastFrame.fault === 0"
+        until(self.page, arrived)
 
 
 @pytest.fixture(scope="module")
@@ -128,12 +130,20 @@ def test_latency_is_measured_and_told(driven: Driven) -> None:
     assert 1 <= len(driven.stub.of_type("latency")[0]["values"]) <= 60
 
 
-def test_a_lost_wheel_is_named_and_space_goes_on(driven: Driven) -> None:
+def test_a_lost_wheel_is_named_and_a_word_goes_before_the_key_that_goes_on(
+    driven: Driven,
+) -> None:
     driven.enter("running")
-    driven.stub.frame |= {"run_state": 2.0, "fault": 1.0}
+    driven.stub.frame |= {"run_state": 2.0, "fault": float(Fault.WHEEL_LOST)}
     until(driven.page, "costeer.state === 'paused'")
     assert "The steering wheel was lost" in banner(driven.page)
-    driven.stub.frame["fault"] = 0.0
+    before = len(driven.stub.of_type("resume"))
+    driven.press("Space")
+    driven.press("c")
+    wait_for(driven.page, lambda: len(driven.stub.of_type("acknowledge")) == 1)
+    assert len(driven.stub.of_type("resume")) == before
+    driven.stub.frame["fault"] = float(Fault.ACKNOWLEDGED)
+    until(driven.page, f"costeer.lastFrame.fault === {int(Fault.ACKNOWLEDGED)}")
     driven.press("Space")
     until(driven.page, "costeer.state === 'running'")
 
@@ -153,7 +163,10 @@ def test_every_fault_of_the_server_is_shown_with_what_can_be_done(
         told = [line for line in banner(driven.page).split("\n") if line]
         assert told[0] == "Paused"
         assert (fault["text"] in told) == bool(fault["text"])
-        assert ("Press Enter or Space to go on." in told) == fault["can_resume"]
+        mends = bool(fault.get("must_be_acknowledged"))
+        goes_on = fault["can_resume"] and not mends
+        assert ("Press Enter or Space to go on." in told) == goes_on
+        assert any("mended press C" in line for line in told) == mends
         assert driven.page.evaluate(warns) == bool(fault["text"])
 
 

@@ -10,7 +10,8 @@ import pytest
 
 from costeer.sessions.session import Session
 from costeer.web.sessions.app import session_app
-from costeer.web.sessions.desk import Desk, Devices
+from costeer.web.sessions.desk import Desk
+from costeer.web.sessions.devices import Devices
 from tests.web.page.conftest import browser as browser  # a fixture
 from tests.web.served import served
 
@@ -44,6 +45,12 @@ class Study(NamedTuple):
     participant: str
     console: str
     token: str
+
+
+@pytest.fixture(autouse=True)
+def home(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    """A folder of settings that is nobody's: who withdraws here loses nothing."""
+    monkeypatch.setenv("COSTEER_HOME", str(tmp_path / "home"))
 
 
 @pytest.fixture

@@ -43,7 +43,8 @@ def go_on(console: Page, further: float = 5.0) -> None:
     deadline = time.monotonic() + PATIENCE
     while metres(console) < goal:
         assert time.monotonic() < deadline
-        console.evaluate("document.querySelector('#resume:enabled')?.click()")
+        for button in ("acknowledge", "resume"):
+            console.evaluate(f"document.querySelector('#{button}:enabled')?.click()")
         console.wait_for_timeout(200)
 
 

@@ -41,6 +41,7 @@ PATIENCE = 300.0
 """Longest wait for a drive to be ready or over [s]: others may use the machine."""
 HTML = "<b>bold</b>"
 RUNNING = """(() => {
+  document.querySelector("#acknowledge:enabled")?.click();
   document.querySelector("#resume:enabled")?.click();
   return document.getElementById("state").textContent === "RUNNING";
 })()"""
@@ -98,7 +99,8 @@ def keep_going(page: Page, console: Page, metres: float = math.inf) -> None:
             return
         assert time.monotonic() < deadline
         # Through the page: a click would wait for a button that may be gone by then.
-        console.evaluate("document.querySelector('#resume:enabled')?.click()")
+        for button in ("acknowledge", "resume"):
+            console.evaluate(f"document.querySelector('#{button}:enabled')?.click()")
         page.wait_for_timeout(200)
 
 

@@ -16,7 +16,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from costeer.base.files import read_whole
-from costeer.base.plugins import advertised, is_place, load_object, refuse_twin
+from costeer.base.plugins import refuse_twin
+from costeer.base.registry import Registry
 from costeer.base.sources import plain, source_hash
 from costeer.intention.features import NUM_FEATURES, WINDOW_LENGTH
 from costeer.intention.gru import NetworkWeights
@@ -116,18 +117,12 @@ def _plugged_in(wanted: str, weights: str | None) -> ChosenPredictor:
     Raises:
         ValueError: If there is none.
     """
-    place = wanted if is_place(wanted) else advertised(ENTRY_POINTS).get(wanted)
-    if place is None:
-        known = [*PREDICTORS, *advertised(ENTRY_POINTS)]
-        raise ValueError(
-            f"there is no predictor {wanted!r}; known are {', '.join(known)}, or give "
-            "yours as module:object or as a Python file"
-        )
+    found = _REGISTRY.loaded(wanted)
     if weights is not None:
         raise ValueError(
             f"predictor {wanted} reads no weights of costeer; leave --weights out"
         )
-    return _own(load_object(place, object, "PREDICTOR"))
+    return _own(found)
 
 
 def _file_hash(path: Path | None) -> str:
@@ -162,6 +157,15 @@ def _own(wanted: Predictor | Judge) -> ChosenPredictor:
         )
     name = getattr(wanted, "__name__", None) or _called(wanted)
     return ChosenPredictor(name, source_hash((wanted,)), judge=wanted)
+
+
+_REGISTRY = Registry[Any](
+    what="predictor",
+    group=ENTRY_POINTS,
+    own=dict.fromkeys(PREDICTORS),
+    kind=object,
+    checked=_own,
+)
 
 
 def _called(wanted: Judge) -> str:

@@ -222,11 +222,11 @@ class Console:
         drive.end(False, reason)
 
     def enough(self) -> None:
-        """Practice is enough, whatever the clock says."""
+        """Practice is enough, whatever clock and criterion say."""
         standing = self._desk.present()
         if standing.step.kind != "practise" or self._desk.drive is None:
             raise ValueError("no practice is on")
-        self._desk.drive.end(True, "ended by the experimenter")
+        self._desk.drive.end(True, "ended by the experimenter", True)
 
     def skip(self, step: str, reason: str) -> None:
         """Leave the step out."""
@@ -300,6 +300,7 @@ ACTIONS: dict[str, tuple[Callable[..., None], tuple[str, ...]]] = {
     "start": (lambda console: console._command("start"), ()),
     "pause": (lambda console: console._command("pause", "experimenter"), ()),
     "resume": (lambda console: console._command("resume"), ()),
+    "acknowledge": (lambda console: console._command("acknowledge"), ()),
     "stop": (Console.stop, ()),
     "emergency": (lambda console: console.stop("emergency stop"), ()),
     "finish": (Console.enough, ()),

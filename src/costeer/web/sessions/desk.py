@@ -9,17 +9,14 @@ from __future__ import annotations
 import math
 import threading
 import time
-from collections.abc import Callable, Mapping
-from importlib import metadata as distribution
-from typing import Any, NamedTuple
+from collections.abc import Mapping
+from typing import Any
 
-from costeer.devices.head.calibration import HeadCalibration
-from costeer.devices.wheels.calibration import WheelCalibration
-from costeer.devices.wheels.interface import WheelDescription
 from costeer.devices.wheels.simulated import in_hands_of
-from costeer.loop.trial import git_revision
 from costeer.runtime.setup import DriveSetup, check_drive
+from costeer.runtime.stream import record_paths
 from costeer.sessions.attempts import Attempts
+from costeer.sessions.breaks import break_left
 from costeer.sessions.plan import Step, trial_of
 from costeer.sessions.questionnaires.answers import checked_answers
 from costeer.sessions.session import Session
@@ -27,32 +24,13 @@ from costeer.sessions.standing import ENDED, OutOfStepError, Standing
 from costeer.sessions.stopping import stop_taking_part, take_part_again
 from costeer.sessions.store import StoreError
 from costeer.web.drive import PageOptions
-from costeer.web.sessions.judged import driven_whole, measured
+from costeer.web.sessions.devices import Devices, facts_of
+from costeer.web.sessions.judged import LiveCriterion, driven_whole, measured
 from costeer.web.sessions.shown import ShownSteps, is_enough
 from costeer.web.sessions.step_drive import FAILED, Outcome, StepDrive
 from costeer.web.sessions.wording import Wording
 
 # Any, in this file: of JSON.
-
-
-class Devices(NamedTuple):
-    """What participants drive with.
-
-    Attributes:
-        input: "keyboard", "gamepad" or "wheel".
-        wheel: None for virtual hands.
-        calibration: None for virtual hands.
-        head: Makes the calibration of a participant's head; None without a tracker.
-        checks: Looks at the devices: name, whether it is well, what to do.
-        haste: Of rehearsals with virtual hands.
-    """
-
-    input: str = "keyboard"
-    wheel: WheelDescription | None = None
-    calibration: WheelCalibration | None = None
-    head: Callable[[str], HeadCalibration | None] = lambda participant: None
-    checks: Callable[[], list[tuple[str, bool, str]]] = list
-    haste: float = 1.0
 
 
 class Desk:
@@ -73,6 +51,7 @@ class Desk:
         self.participant = ""
         self._drive: StepDrive | None = None
         self._driven: tuple[str, str, int] | None = None
+        self.criterion: LiveCriterion | None = None
         self._is_begun = False
         self.checked: list[dict[str, Any]] = []
         self.trouble = ""
@@ -117,7 +96,9 @@ class Desk:
             attempt = self._attempt(standing)
             return told | {
                 "participant": standing.participant,
-                "step": self._shown.shown(standing, self._drive, attempt),
+                "step": self._shown.shown(
+                    standing, self._drive, attempt, self.criterion
+                ),
                 "stopped": stopped,
             }
 
@@ -164,12 +145,15 @@ class Desk:
             raise ValueError("the questions come first")
         if on.kind == "drive":
             raise ValueError("the trial ends at the end of the course")
-        if on.kind == "break" and self._shown.remaining(standing) > 0.0:
+        if on.kind == "break" and break_left(self.session, standing) > 0.0:
             raise ValueError("the break is not over yet")
         if on.kind == "practise":
             if not is_enough(on, self._drive):
                 raise ValueError(f"practise for at least {on.minutes:g} min")
-            self._end_practice()
+            if self.criterion is not None and not self.criterion.is_met:
+                raise ValueError("practise until the car keeps its lane steadily")
+            if self._drive is not None:  # what is met now is not judged again
+                self._drive.end(True, "", True)
             return
         self.session.finish(standing.participant, on.id)
 
@@ -280,7 +264,8 @@ class Desk:
         if self._drive is not None and self._driven is not None:
             if self._driven[:2] != (who, step.id) or self._drive.is_ending:
                 return
-            self.attempts.start(who, step.id, self._facts(self._drive.setup))
+            facts = facts_of(self.devices, self._drive.setup, self.checked)
+            self.attempts.start(who, step.id, facts)
             self._is_begun = True
 
     def _start(self, who: str, step: Step) -> None:
@@ -304,22 +289,12 @@ class Desk:
         check_drive(setup)
         number, record = self.attempts.next(who, step)
         self._driven, self._is_begun = (who, step.id, number), False
-        options = PageOptions(self.devices.input, False, plan.self_paced)
+        has_criterion = not math.isnan(step.sdlp_below)
+        stream = record_paths(record).stream
+        self.criterion = LiveCriterion(step, stream) if has_criterion else None
+        options = PageOptions(self.devices.input, False, plan.self_paced, False)
         self._drive = StepDrive(setup, record, options, self._end)
         self._drive.begin()
-
-    def _facts(self, setup: DriveSetup) -> dict[str, Any]:
-        """What a reader of the methods section asks for."""
-        calibration = self.devices.calibration
-        return {
-            "costeer": distribution.version("costeer"),
-            "git_revision": git_revision(),
-            "input": self.devices.input,
-            "wheel": None if setup.wheel is None else setup.wheel.name,
-            "wheel_calibration": None if calibration is None else calibration._asdict(),
-            "head": None if setup.head is None else setup.head.tracker.kind,
-            "checks": self.checked,
-        }
 
     def _end(self, outcome: Outcome) -> None:
         """Keep how an attempt ended; called in a thread of the drive.
@@ -352,7 +327,8 @@ class Desk:
         if outcome.record is None or not outcome.reached_end:
             return None, outcome.reason
         steps = {each.id: each for each in self.session.steps_of(driven[0])}
-        measures, said = measured(outcome.record, steps[driven[1]])
+        step = steps[driven[1]]
+        measures, said = measured(outcome.record, step, outcome.is_waived)
         return measures, "; ".join(each for each in (outcome.reason, said) if each)
 
     def _keep(
@@ -374,10 +350,6 @@ class Desk:
                 continue
             self.trouble = ""
             return
-
-    def _end_practice(self) -> None:
-        if self._drive is not None:
-            self._drive.end(True, "")
 
     def leave_drive(self, reason: str) -> None:
         """End the drive that is on; what was driven is kept as aborted."""

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import hashlib
-import time
+import math
 from typing import Any
 
+from costeer.sessions.breaks import break_left
 from costeer.sessions.plan import Step
 from costeer.sessions.questionnaires.instrument import Instrument, rendered
 from costeer.sessions.session import Session
 from costeer.sessions.standing import Standing
+from costeer.web.sessions.judged import LiveCriterion
 from costeer.web.sessions.step_drive import StepDrive
 from costeer.web.sessions.wording import Wording
 
@@ -26,10 +28,13 @@ class ShownSteps:
 
     def __init__(self, session: Session, wording: Wording) -> None:
         self._session, self._wording = session, wording
-        self._break_began: dict[tuple[str, str], float] = {}
 
     def shown(
-        self, standing: Standing, drive: StepDrive | None, attempt: int
+        self,
+        standing: Standing,
+        drive: StepDrive | None,
+        attempt: int,
+        criterion: LiveCriterion | None = None,
     ) -> dict[str, Any]:
         """A step that is on.
 
@@ -37,6 +42,7 @@ class ShownSteps:
             standing: Of the participant.
             drive: That is on; None without one.
             attempt: Number of the drive among those of its step; 0 without one.
+            criterion: Of the practice that is on.
         """
         step, who = standing.step, standing.participant
         shown: dict[str, Any] = {
@@ -56,11 +62,13 @@ class ShownSteps:
                 self.instrument(who, step), self._seed(who, step)
             )
         if step.kind == "break":
-            shown["remaining"] = self.remaining(standing)
+            shown["remaining"] = round(break_left(self._session, standing))
         if step.drives:
             shown["drive"] = {"state": "waiting"} if drive is None else drive.told()
             shown["attempt"] = attempt
             shown["enough"] = is_enough(step, drive)
+            if criterion is not None and not math.isnan(step.sdlp_below):
+                shown["criterion"] = criterion.told()
         return shown
 
     def _words(self, who: str, step: Step) -> dict[str, str]:
@@ -77,12 +85,6 @@ class ShownSteps:
         """Of a questionnaire's random order: the same after a reload."""
         told = f"{self._session.plan_of(who).seed} {who} {step.id}"
         return int.from_bytes(hashlib.sha256(told.encode()).digest()[:7])
-
-    def remaining(self, standing: Standing) -> float:
-        """Of a break [s]."""
-        key = standing.participant, standing.step.id
-        began = self._break_began.setdefault(key, time.monotonic())
-        return max(0.0, round(60.0 * standing.step.minutes - time.monotonic() + began))
 
 
 def is_enough(step: Step, drive: StepDrive | None) -> bool:

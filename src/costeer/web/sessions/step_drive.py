@@ -39,6 +39,7 @@ _STATES = {
     int(RunState.PAUSED): PAUSED,
     int(RunState.ENDED): SAVING,
 }
+_FAULTS = {int(each): each for each in Fault}
 
 
 @cache
@@ -66,15 +67,18 @@ class Outcome(NamedTuple):
 
     Attributes:
         record: That was kept; None if nothing was.
-        reached_end: Whether the course was driven to its end, or practice was enough.
+        reached_end: Whether the course was driven to its end, to a collision that ends
+            it, or practice was enough.
         reason: Why not.
         facts: Of the way from device to page, in words.
+        is_waived: Whether a practice counts whatever it was like.
     """
 
     record: Path | None
     reached_end: bool
     reason: str
     facts: tuple[str, ...]
+    is_waived: bool = False
 
 
 class StepDrive:
@@ -135,7 +139,7 @@ class StepDrive:
     def _hear(self, marker: Marker) -> None:
         """Follow the drive by what happens."""
         self.markers.append(marker)
-        if marker.kind == "ended" and marker.name == "course":
+        if marker.kind == "ended" and marker.name in ("course", "collision"):
             self.end(True, "")
         elif marker.kind == "fault" and marker.name == Fault.LOOP_GONE.word:
             self.end(False, Fault.LOOP_GONE.text)
@@ -164,17 +168,24 @@ class StepDrive:
             raise ValueError(f"the drive is {self.state}; wait until it is ready")
         pages.drive.send(command, *values)
 
-    def end(self, reached_end: bool, reason: str) -> None:
-        """End the attempt; returns at once, and does nothing a second time."""
+    def end(self, reached_end: bool, reason: str, is_waived: bool = False) -> None:
+        """End the attempt; returns at once, and does nothing a second time.
+
+        Args:
+            reached_end: Whether it is whole.
+            reason: Why not, or who ended it.
+            is_waived: Whether a practice counts whatever it was like.
+        """
         with self._lock:
             if self._is_ending:
                 return
             self._is_ending = True
         if self.state != FAILED:
             self.state = SAVING
-        threading.Thread(target=self._close, args=(reached_end, reason)).start()
+        given = (reached_end, reason, is_waived)
+        threading.Thread(target=self._close, args=given).start()
 
-    def _close(self, reached_end: bool, reason: str) -> None:
+    def _close(self, reached_end: bool, reason: str, is_waived: bool) -> None:
         """Make the record whole and tell how it ended."""
         if self._thread is not threading.current_thread() and self._thread.ident:
             self._thread.join()
@@ -188,8 +199,8 @@ class StepDrive:
             parts = (reason, *lost, *pages.drive.unkept)
             reason = "; ".join([each for each in parts if each])
         record = kept[-1] if kept else None
-        outcome = Outcome(record, reached_end and record is not None, reason, facts)
-        self._ended(outcome)
+        is_whole = reached_end and record is not None
+        self._ended(Outcome(record, is_whole, reason, facts, is_waived))
         if self.state != FAILED:
             self.state = OVER
 
@@ -202,6 +213,11 @@ class StepDrive:
     def metres(self) -> float:
         """Driven [m]; 0 before the start."""
         return self._number("longitudinal_position")
+
+    @property
+    def _is_broken(self) -> bool:
+        """Whether a fault waits for the experimenter's word."""
+        return _FAULTS[int(self._number("fault"))].must_be_acknowledged
 
     def _written(self) -> float | None:
         """How long ago the record was written last [s]; None before it is begun."""
@@ -223,6 +239,7 @@ class StepDrive:
         return {
             "state": self.state,
             "reason": self.reason,
+            "is_broken": self._is_broken,
             "seconds": round(self.seconds, 2),
             "metres": round(self.metres, 1),
             "length": self.setup.trial.length,

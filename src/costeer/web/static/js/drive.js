@@ -158,6 +158,7 @@ export class Drive {
     if (code in INDICATOR_KEYS) this.indicate(INDICATOR_KEYS[code]);
     else if (code === "Enter" || code === "NumpadEnter" || code === "Space") this.goOn();
     else if (code === "KeyP") this.state === "paused" ? this.goOn() : this.link?.send({ type: "pause" });
+    else if (code === "KeyC") this.mayAcknowledge && this.link?.send({ type: "acknowledge" });
     else if (code === "KeyH" || key === "?") this.hud.toggleHelp();
     else if (code === "KeyF") toggleFullScreen();
     else if (code === "KeyS") this.toggleStrip();
@@ -239,7 +240,9 @@ export class Drive {
   /** Take on a state: of the trial, from the server's table, or of the link. */
   enter(state, fault) {
     this.state = state.name;
-    this.goesOnBy = fault?.text && !fault.can_resume ? "" : state.goes_on_by;
+    const mustWait = fault?.text && (!fault.can_resume || fault.must_be_acknowledged);
+    this.goesOnBy = mustWait ? "" : state.goes_on_by;
+    this.mayAcknowledge = Boolean(fault?.must_be_acknowledged);
     this.hud.state(state, fault);
   }
 

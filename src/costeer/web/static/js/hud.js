@@ -26,6 +26,9 @@ export const LINK_STATES = {
   },
 };
 
+/** What lets a drive go on after a fault: never the key that starts it alone. */
+const MENDED = "When it is mended press [C]; then [Enter] goes on.";
+
 /** A page that the server has let go, and why. */
 export const refused = (reason) => ({
   name: "refused", title: "This page does not drive", lines: [reason, "Trying again …"], warns: true,
@@ -37,6 +40,7 @@ const DRIVING_KEYS = [
   [["↑", "↓"], "accelerator and brake"],
   [["Enter", "Space"], "start, or go on after a pause"],
   [["P"], "pause"],
+  [["C"], "after a fault: it is mended"],
   [["Z", "X"], "indicator left, right; also , and ."],
   [["M"], "sound off or on"],
   [["+", "−"], "louder, softer"],
@@ -103,19 +107,21 @@ export class Hud {
   /**
    * Show the message that belongs to a state of the trial or of the link.
    * @param {{name: string, title: string, lines: string[], warns?: boolean}} state
-   * @param {{text: string, can_resume: boolean}} [fault] what is wrong, if anything is
+   * @param {{text: string, can_resume: boolean, must_be_acknowledged: boolean}} [fault]
+   *   what is wrong, if anything is
    */
   state(state, fault) {
     const { title, lines, warns = false } = state;
     if (this.texts) this.tellParticipant(state, fault);
     else if (!title || !fault?.text) this.message(title, lines, warns);
+    else if (fault.must_be_acknowledged) this.message(title, [fault.text, MENDED], true);
     else this.message(title, fault.can_resume ? [fault.text, ...lines] : [fault.text], true);
   }
 
   /** In the participant's language; what to mend is for the experimenter's console. */
   tellParticipant({ name, title, warns = false }, fault) {
     const words = (part) => this.texts[`drive_${name}_${part}`] ?? "";
-    const mayGoOn = !fault?.text || (fault.can_resume && name === "waiting");
+    const mayGoOn = !fault?.text || (fault.can_resume && !fault.must_be_acknowledged);
     if (!title) this.message(title);
     else if (mayGoOn) this.message(words("title"), [words("text")].filter(Boolean), warns);
     else this.message(words("title"), [this.texts.error_drive], true);

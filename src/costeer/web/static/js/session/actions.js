@@ -8,13 +8,16 @@ const TWICE = 1000;
 
 const isIn = (...states) => ({ step }) => states.includes(step?.drive?.state);
 const isOn = isIn("starting", "ready", "running", "paused");
+/** A fault stopped the drive: nobody goes on before the experimenter says that it is mended. */
+const isBroken = ({ step }) => Boolean(step?.drive?.is_broken);
 const hasStep = ({ step }) => Boolean(step);
 
 /** Buttons from left to right, and when each makes sense. */
 const BUTTONS = [
-  { action: "start", label: "Start", when: isIn("ready") },
+  { action: "start", label: "Start", when: (state) => isIn("ready")(state) && !isBroken(state) },
   { action: "pause", label: "Pause", when: isIn("running") },
-  { action: "resume", label: "Go on", when: isIn("paused") },
+  { action: "acknowledge", label: "Mended", when: isBroken },
+  { action: "resume", label: "Go on", when: (state) => isIn("paused")(state) && !isBroken(state) },
   { action: "stop", label: "Stop", when: isOn, question: {
     title: "Stop this drive?", text: "It is kept as aborted, and the step is driven again.", yes: "Stop the drive",
   } },

@@ -46,6 +46,7 @@ export function facts(state, signals, duration) {
     { name: step?.kind === "practise" ? "still to practise" : "remaining",
       value: clock(remaining(step, seconds, metres, signals.value("longitudinal_velocity"))) },
     { name: "driven", value: shownNumber(metres, 0), unit: Number.isFinite(metres) ? way : "" },
+    ...criterionFact(step?.criterion),
     recordFact(drive),
     linkFact(state, drive, duration),
     { name: "disk free", value: shownNumber(state.disk.free / 1e9, 1), unit: "GB",
@@ -58,6 +59,14 @@ function remaining(step, seconds, metres, speed) {
   if (step?.kind === "practise") return Math.max(0, 60 * step.minutes - (seconds ?? 0));
   if (step?.kind !== "drive" || !(speed > CRAWLING)) return Number.NaN;
   return (step.drive.length - metres) / speed;
+}
+
+/** Whether a practice meets its criterion so far; nothing without one. */
+function criterionFact(criterion) {
+  if (!criterion) return [];
+  const { sdlp, below, met } = criterion;
+  return [{ name: "SDLP so far", value: shownNumber(sdlp ?? Number.NaN, 2),
+    unit: `below ${below} m`, kind: met ? "good" : "bad" }];
 }
 
 /** Whether the record is written, and how long ago it was last. */

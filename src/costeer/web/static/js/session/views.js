@@ -87,16 +87,21 @@ function brief(root, state, does) {
   card(root, title, [text], once(words(state.texts, "trial_start"), does.ready));
 }
 
-/** Beside the frame of the drive: the end of a practice that was long enough. */
+/** Beside the frame of the drive: the end of a practice that was long and good enough. */
 function driving(root, { texts }, does) {
   const button = once(words(texts, "practice_enough"), does.next);
-  button.hidden = true;
-  root.replaceChildren(make("div", { class: "enough" }, button));
+  const more = make("p", {}, words(texts, "practice_not_yet"));
+  button.hidden = more.hidden = true;
+  root.replaceChildren(make("div", { class: "enough" }, more, button));
+  const show = (element, isShown) => {
+    if (isShown && element.hidden) does.say(element.textContent);
+    element.hidden = !isShown;
+  };
   return {
-    update: ({ step }) => {
-      if (step.enough === !button.hidden) return;
-      button.hidden = !step.enough;
-      if (step.enough) does.say(button.textContent);
+    update: ({ step: { enough, criterion } }) => {
+      const isMet = criterion?.met ?? true;
+      show(button, enough && isMet);
+      show(more, enough && !isMet);
     },
   };
 }
