@@ -238,7 +238,7 @@ def test_the_path_leads_back_to_the_lane_it_came_from(
     before = driver.initial_state(DriverParameters(), -9.0)
     around = Surroundings(car, leader(120.0, SPEED - 3.0), SPEED)
     after = decision.step(FICKLE, on_the_way(phase, 2.0), around, draws(0.5), DT)
-    aimed = driver.aim(DriverParameters(), before, knowledge, car, after, quiet, DT)
+    aimed, _ = driver.aim(DriverParameters(), before, knowledge, car, after, quiet, DT)
     end = path_point(aimed.path, 1000.0).lateral_position
     if lane is None:
         assert aimed.path == before.tracking.path

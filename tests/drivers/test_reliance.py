@@ -8,19 +8,25 @@ from numpy.typing import NDArray
 
 from costeer.drivers import reliance
 from costeer.drivers.reliance import RelianceParameters
+from costeer.plant.parameters import RoadParameters
+from costeer.sensing.measurement import standing_start
 from tests.drivers.samples import DT
 
 PARAMETERS = RelianceParameters()
 
 
 def stiffening(
-    guidance: float, seconds_of_guidance: float, seconds: float, wanted: float = 1.0
+    guidance: float,
+    seconds_of_guidance: float,
+    seconds: float,
+    wanted: float = 1.0,
+    leading: bool = False,
 ) -> NDArray[np.float64]:
     """Stiffening at each step while guidance acts for a while, then not."""
     state, answers = reliance.initial_state(), []
     for k in range(round(seconds / DT)):
         torque = guidance if k * DT < seconds_of_guidance else 0.0
-        state = reliance.step(PARAMETERS, state, torque, wanted, DT)
+        state = reliance.step(PARAMETERS, state, torque, wanted, leading, DT)
         answers.append(state.stiffening)
     return np.array(answers)
 
@@ -52,6 +58,31 @@ def test_arms_relax_when_the_guidance_is_gone() -> None:
 def test_agreeing_or_faint_guidance_leaves_the_arms_relaxed() -> None:
     assert (stiffening(2.0, 5.0, 2.0) == 1.0).all()
     assert (stiffening(-0.29, 5.0, 2.0) == 1.0).all()
+
+
+def test_arms_stay_relaxed_against_guidance_that_leads() -> None:
+    assert (stiffening(-2.0, 5.0, 2.0, leading=True) == 1.0).all()
+
+
+@pytest.mark.parametrize(
+    ("guidance", "steered", "speed", "leads"),
+    [
+        (1.0, 1.0, 0.5, True),  # 3.5 m to go, 0.75 m come by themselves
+        (-1.0, 1.0, 0.5, False),  # away from the goal
+        (1.0, 1.0, 3.0, False),  # 4.5 m would be too far: this makes it worse
+        (-1.0, 1.0, 3.0, True),  # and this does not
+        (1.0, 0.0, 0.5, False),  # no lane change
+    ],
+)
+def test_guidance_leads_that_brings_the_car_to_the_wanted_lane(
+    guidance: float, steered: float, speed: float, leads: bool
+) -> None:
+    car = standing_start(RoadParameters())._replace(
+        lateral_position=-3.5, lateral_velocity=speed
+    )
+    own = PARAMETERS._replace(leading_horizon=1.5)
+    assert reliance.leads(own, car, guidance, 0.0, steered) is leads
+    assert not reliance.leads(PARAMETERS, car, guidance, 0.0, steered)
 
 
 def test_a_knock_shorter_than_a_reaction_leaves_the_arms_relaxed() -> None:

@@ -2,25 +2,25 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 from costeer.base import array as xp
-from costeer.base.array import Real, compiled
+from costeer.base.array import Flag, Real, compiled
 from costeer.drivers import (
+    correcting,
     decision,
     evasion,
     gaze,
     indicating,
+    learning,
     longitudinal,
     reliance,
     tracking,
     vision,
 )
-from costeer.drivers.arm import ArmCommand, ArmParameters, wanted_torque
+from costeer.drivers.arm import ArmCommand, wanted_torque
+from costeer.drivers.correcting import CorrectingState
 from costeer.drivers.decision import DecisionState, Draws
-from costeer.drivers.evasion import Evasion, EvasionParameters, EvasionState
-from costeer.drivers.gaze import GazeDraws, GazeParameters, GazeState
-from costeer.drivers.indicating import IndicatorParameters, IndicatorState
+from costeer.drivers.evasion import Evasion, EvasionState
+from costeer.drivers.gaze import GazeDraws, GazeState
 from costeer.drivers.interface import (
     Action,
     DriverNoise,
@@ -30,11 +30,14 @@ from costeer.drivers.interface import (
     leader_in,
     unless,
 )
-from costeer.drivers.longitudinal import LongitudinalParameters, LongitudinalState
-from costeer.drivers.overtaking import DecisionParameters, Surroundings
-from costeer.drivers.reliance import RelianceParameters, RelianceState
-from costeer.drivers.tracking import TrackingParameters, TrackingState
-from costeer.drivers.vision import VisionNoise, VisionParameters, VisionState
+from costeer.drivers.longitudinal import LongitudinalState
+from costeer.drivers.overtaking import Surroundings
+from costeer.drivers.reliance import RelianceState
+from costeer.drivers.tracking import TrackingState
+from costeer.drivers.vision import VisionNoise, VisionState
+from costeer.drivers.whole import DriverParameters as DriverParameters
+from costeer.drivers.whole import DriverState as DriverState
+from costeer.drivers.whole import initial_state as initial_state
 from costeer.plant.parameters import holding_stiffness
 from costeer.plant.road import cruising_lane
 from costeer.sensing.measurement import Measurement
@@ -42,67 +45,6 @@ from costeer.sensing.measurement import Measurement
 SLOWEST_SEEN = 5.0
 """A driver who is slower sees as at this speed, and steers by less the slower [m/s]:
 nobody winds the wheel of a car that hardly moves. Source: assumed."""
-
-
-class DriverParameters(NamedTuple):
-    """One driver.
-
-    Attributes:
-        vision: Eyes to intended angle [SI units]. Source: drivers/vision.py.
-        arm: Intended angle to torque [SI units]. Source: drivers/arm.py.
-        reliance: Hands that feel [SI units]. Source: drivers/reliance.py.
-        tracking: Tolerance of lane position [SI units]. Source: drivers/tracking.py.
-        decision: When to change lanes [SI units]. Source: drivers/decision.py.
-        gaze: Glances [SI units]. Source: drivers/gaze.py.
-        longitudinal: Speed [SI units]. Source: drivers/longitudinal.py.
-        evasion: Emergencies [SI units]. Source: drivers/evasion.py.
-        indicator: When it is set [SI units]. Source: drivers/indicating.py.
-
-    Example:
-        >>> import costeer
-        >>> driver = costeer.Driver()
-        >>> stiff = driver._replace(arm=driver.arm._replace(stiffness=20.0))
-        >>> record = costeer.simulate("manual", length=200, driver=stiff)
-    """
-
-    vision: VisionParameters = VisionParameters()
-    arm: ArmParameters = ArmParameters()
-    reliance: RelianceParameters = RelianceParameters()
-    tracking: TrackingParameters = TrackingParameters()
-    decision: DecisionParameters = DecisionParameters()
-    gaze: GazeParameters = GazeParameters()
-    longitudinal: LongitudinalParameters = LongitudinalParameters()
-    evasion: EvasionParameters = EvasionParameters()
-    indicator: IndicatorParameters = IndicatorParameters()
-
-
-class DriverState(NamedTuple):
-    """What the driver remembers."""
-
-    vision: VisionState
-    reliance: RelianceState
-    tracking: TrackingState
-    decision: DecisionState
-    gaze: GazeState
-    longitudinal: LongitudinalState
-    evasion: EvasionState
-    indicator: IndicatorState
-
-
-@compiled
-def initial_state(parameters: DriverParameters, lateral_position: Real) -> DriverState:
-    """A driver in a lane whose centre lies at `lateral_position` [m]."""
-    aimed = lateral_position + parameters.tracking.lane_bias
-    return DriverState(
-        vision=vision.initial_state(),
-        reliance=reliance.initial_state(),
-        tracking=tracking.initial_state(aimed),
-        decision=decision.initial_state(),
-        gaze=gaze.initial_state(),
-        longitudinal=longitudinal.initial_state(),
-        evasion=evasion.initial_state(),
-        indicator=indicating.initial_state(),
-    )
 
 
 @compiled
@@ -162,16 +104,22 @@ def aim(
     decided: DecisionState,
     noise: DriverNoise,
     dt: Real,
-) -> TrackingState:
-    """Let the aim wander and, when steering starts, plan the own path."""
+) -> tuple[TrackingState, CorrectingState]:
+    """Let the aim wander; plan the own path when steering starts, or anew."""
     wandered = tracking.wander(parameters.tracking, state.tracking, noise.wander, dt)
     road = knowledge.road
+    steered = decision.steered_to(
+        decided, decision.direction(decided, road.overtaking_side)
+    )
+    own = parameters.correcting, state.correcting, wandered, measurement
+    plan = correcting.step(*own, decided, steered, dt)
     out = (decided.phase == decision.CHANGING) | (decided.phase == decision.PASSING)
     away = xp.select(out, road.overtaking_side, 0.0)
     lane = cruising_lane(road) + away
-    given = parameters.tracking, road, measurement, lane, decided.change_duration
-    path = xp.when(decided.started, tracking.planned, given, wandered.path)
-    return wandered._replace(path=path)
+    lasts = xp.select(plan.due, plan.duration, decided.change_duration)
+    given = parameters.tracking, road, measurement, lane, lasts
+    path = xp.when(decided.started | plan.due, tracking.planned, given, wandered.path)
+    return wandered._replace(path=path), plan
 
 
 @compiled
@@ -233,6 +181,7 @@ def feel(
     knowledge: Knowledge,
     perception: Perception,
     intended_angle: Real,
+    leading: Flag,
     dt: Real,
 ) -> tuple[RelianceState, ArmCommand]:
     """Judge the guidance by the hands; return their state and the arm's command."""
@@ -250,15 +199,16 @@ def feel(
         reliance=0.0,
     )
     wanted = wanted_torque(parameters.arm, relaxed, measurement.steering_wheel_angle)
+    own = learning.experienced(parameters.learning, state.learning, parameters.reliance)
     hands = reliance.step(
-        parameters.reliance, state.reliance, perception.guidance_torque, wanted, dt
+        own, state.reliance, perception.guidance_torque, wanted, leading, dt
     )
     return hands, ArmCommand(
         intended_angle=intended_angle,
         holding_stiffness=stiffness,
         stiffening=hands.stiffening,
         guidance=hands.felt_guidance,
-        reliance=parameters.reliance.reliance,
+        reliance=own.reliance,
     )
 
 
@@ -355,24 +305,21 @@ def act(
     )
     direction = decision.direction(decided, knowledge.road.overtaking_side)
     head = look(parameters, state, decided, direction, noise, dt)
-    aimed = aim(parameters, state, knowledge, measurement, decided, noise, dt)
+    aimed, plan = aim(parameters, state, knowledge, measurement, decided, noise, dt)
     aimed = swerve(parameters, knowledge, measurement, aimed, evading)
     eyes, intended = see(parameters, state, knowledge, measurement, aimed, noise, dt)
-    hands, command = feel(parameters, state, knowledge, perception, intended, dt)
     steered = decision.steered_to(decided, direction)
+    felt, goal = state.reliance.felt_guidance, aimed.path.y5
+    led = reliance.leads(parameters.reliance, measurement, felt, goal, steered)
+    hands, command = feel(parameters, state, knowledge, perception, intended, led, dt)
+    disputes = hands.time_opposed > parameters.reliance.opposing_time
+    known = parameters.learning, state.learning, hands.felt_guidance, disputes
     leaders = (
         unless(evading.unseen, perception.leader),
         unless(evading.unseen, leader_in(perception, steered)),
     )
-    foot = longitudinal.step(
-        parameters.longitudinal,
-        state.longitudinal,
-        measurement,
-        leaders,
-        decided,
-        noise.speed,
-        dt,
-    )
+    way = parameters.longitudinal, state.longitudinal, measurement, leaders, decided
+    foot = longitudinal.step(*way, noise.speed, dt)
     foot = brake(parameters, state, foot, evading, measurement, dt)
     lever = parameters.indicator, state.indicator, decided, steered
     new_state = DriverState(
@@ -384,5 +331,7 @@ def act(
         longitudinal=foot,
         evasion=evaded,
         indicator=indicating.step(*lever, noise.indicator_uniform, dt),
+        correcting=plan,
+        learning=learning.step(*known, dt),
     )
     return new_state, acted(parameters, new_state, knowledge, measurement, command)

@@ -5,8 +5,9 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from costeer.base import array as xp
-from costeer.base.array import Real, compiled
+from costeer.base.array import Flag, Real, compiled
 from costeer.base.filters import low_pass
+from costeer.sensing.measurement import Measurement
 
 
 class RelianceParameters(NamedTuple):
@@ -24,6 +25,9 @@ class RelianceParameters(NamedTuple):
             to 3 in studies of arm admittance.
         tensing_time: Time constant of stiffening and of relaxing [s]. Source:
             assumed, tense within 0.3 to 0.5 s.
+        leading_horizon: Guidance that brings the car to the wanted lane within it
+            leads and does not oppose; 0: there is no such difference [s]. Source:
+            assumed, 0 in population 2.
     """
 
     reliance: Real = 0.5
@@ -32,6 +36,7 @@ class RelianceParameters(NamedTuple):
     opposing_time: Real = 0.2
     cocontraction: Real = 2.2
     tensing_time: Real = 0.2
+    leading_horizon: Real = 0.0
 
 
 class RelianceState(NamedTuple):
@@ -55,11 +60,39 @@ def initial_state() -> RelianceState:
 
 
 @compiled
+def leads(
+    parameters: RelianceParameters,
+    measurement: Measurement,
+    guidance: Real,
+    goal: Real,
+    steered: Real,
+) -> Flag:
+    """Whether guidance takes the car to where a lane change goes, if sooner.
+
+    What is missing to the goal after `leading_horizon` at the present lateral speed
+    says to which side the driver still wants to go.
+
+    Args:
+        parameters: Horizon.
+        measurement: Where the car is, and how it moves across the road.
+        guidance: Felt at the wheel [N·m].
+        goal: Lateral position of the wanted lane's centre [m].
+        steered: Side that the driver steers to, 0 for none [-].
+    """
+    across = measurement.longitudinal_velocity * measurement.yaw_angle
+    speed = across + measurement.lateral_velocity
+    ahead = measurement.lateral_position + speed * parameters.leading_horizon
+    towards = guidance * (goal - ahead) > 0.0
+    return (parameters.leading_horizon > 0.0) & (steered != 0.0) & towards
+
+
+@compiled
 def step(
     parameters: RelianceParameters,
     state: RelianceState,
     guidance_torque: Real,
     wanted_torque: Real,
+    leading: Flag,
     dt: Real,
 ) -> RelianceState:
     """Feel the guidance for one step and stiffen against it if it opposes.
@@ -69,11 +102,12 @@ def step(
         state: Of the hands.
         guidance_torque: At the wheel [N·m].
         wanted_torque: That the relaxed arm would give by itself [N·m].
+        leading: Whether the guidance leads to where the driver wants to go.
         dt: Control step [s].
     """
     felt = low_pass(state.felt_guidance, guidance_torque, dt, parameters.feeling_time)
     noticed = (felt > parameters.noticed_torque) | (felt < -parameters.noticed_torque)
-    opposes = noticed & (felt * wanted_torque < 0.0)
+    opposes = noticed & (felt * wanted_torque < 0.0) & xp.logical_not(leading)
     time_opposed = xp.select(opposes, state.time_opposed + dt, 0.0)
     tense = time_opposed > parameters.opposing_time
     aim = xp.select(tense, parameters.cocontraction, 1.0)
