@@ -331,7 +331,7 @@ def _export(folder: Path, to: str, out: Path | None) -> None:
     people = export_session(folder, to, out)
     typer.echo(out)
     note(
-        f"costeer: {len(people.drives)} trials; excluded or missing: "
+        f"costeer: {len(people.all_drives)} trials; excluded or missing: "
         f"{len(people.exclusions)}, exclusions.csv of --format csv says why"
     )
 

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Mapping
 
 from costeer.scenarios.definition import Scenario
 from costeer.scenarios.reading import scenario_named
 from costeer.sessions.plan import Plan, plan_hash
 from costeer.sessions.plan_file import kept_plan
-from costeer.sessions.scenarios import scenario_in
+from costeer.sessions.scenarios import is_file_name, scenario_in
 from costeer.sessions.store import Store, now
 
 
@@ -67,6 +68,16 @@ class PlanVersions:
             found = scenario_in(rows[0]["text"], name) if rows else scenario_named(name)
             self._scenarios[version, name] = found
         return self._scenarios[version, name]
+
+    def scenario_hash(self, version: int, name: str) -> str:
+        """What tells editions of a lab's scenario apart; empty for one that ships."""
+        rows = self._store.rows(
+            "SELECT text FROM scenarios WHERE version = ? AND name = ?",
+            *(version, name),
+        )
+        if not rows or not is_file_name(name):
+            return ""
+        return hashlib.sha256(str(rows[0]["text"]).encode()).hexdigest()[:8]
 
     def hashes(self) -> dict[int, str]:
         """What tells the versions apart."""
