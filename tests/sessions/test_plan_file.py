@@ -7,7 +7,13 @@ from pathlib import Path
 import pytest
 
 from costeer.cli import main
-from costeer.sessions.plan_file import check_words, paper_plan_text, parsed_plan
+from costeer.sessions.plan import session_steps
+from costeer.sessions.plan_file import (
+    check_words,
+    paper_plan_text,
+    parsed_plan,
+    read_plan,
+)
 from costeer.sessions.session import Session
 
 HEAD = "title: a\nsteps:\n  - {kind: instruct, text: welcome}\n"
@@ -44,15 +50,170 @@ def test_a_step_that_cannot_be_is_refused_with_its_line(step: str, said: str) ->
         parsed_plan(f"{HEAD}  - {step}\n")
 
 
-def test_a_condition_that_would_be_driven_twice_is_refused_with_its_line() -> None:
-    steps = "  - {kind: drive, condition: manual}\n  - {kind: break}\n"
-    block = "  - {kind: trials, conditions: [weak-rapid, manual]}\n"
-    with pytest.raises(
-        ValueError, match=r"line 6: step 4 .*manual is driven in step 2"
-    ):
-        parsed_plan(f"{HEAD}{steps}{block}")
-    practise = "{kind: practise, condition: manual, minutes: 1, longest_minutes: 2}"
-    parsed_plan(f"{HEAD}  - {practise}\n{steps}")  # practice is no trial
+def labels(steps: str) -> list[tuple[str, int, str]]:
+    """Label, occasion and id of every trial of a plan."""
+    plan = parsed_plan(f"{HEAD}{steps}")
+    trials = [each for each in session_steps(plan, 2) if each.kind == "drive"]
+    return [(each.label, each.occasion, each.id) for each in trials]
+
+
+def test_condition_that_is_driven_again_has_a_label_of_its_own() -> None:
+    manual = "  - {kind: drive, condition: manual%s}\n"
+    block = "  - {kind: trials, order: given, conditions: [weak-rapid, manual]}\n"
+    assert labels(manual % "" + block + manual % ", label: after") == [
+        ("manual", 1, "drive-manual"),
+        ("weak-rapid", 1, "drive-weak-rapid"),
+        ("manual-2", 2, "drive-manual-2"),
+        ("manual-after", 3, "drive-manual-after"),
+    ]
+
+
+def test_occasions_are_counted_by_scenario() -> None:
+    manual = "  - {kind: drive, condition: manual%s}\n"
+    there = manual % ", scenario: obstacle"
+    assert labels(manual % "" + there + manual % "" + there) == [
+        ("manual", 1, "drive-manual"),
+        ("manual-obstacle", 1, "drive-manual-obstacle"),
+        ("manual-2", 2, "drive-manual-2"),
+        ("manual-obstacle-2", 2, "drive-manual-obstacle-2"),
+    ]
+
+
+def test_labels_do_not_follow_the_order_in_which_somebody_drives() -> None:
+    block = "  - {kind: trials, label: dry, conditions: [manual, weak-rapid]}\n"
+    plan = parsed_plan(f"{HEAD}{block}{block.replace('dry', 'wet')}")
+    found = [
+        {
+            (e.label, e.condition, e.occasion)
+            for e in session_steps(plan, slot)
+            if e.label
+        }
+        for slot in (1, 2)
+    ]
+    assert found[0] == found[1]
+    assert ("weak-rapid-wet", "weak-rapid", 2) in found[0]
+
+
+def test_what_follows_a_trial_bears_its_label() -> None:
+    asked = "  - {kind: ask, instrument: nasa-tlx}\n"
+    manual = "  - {kind: drive, condition: manual}\n"
+    plan = parsed_plan(f"{HEAD}{manual}{asked}{manual}{asked}")
+    found = [(e.id, e.label) for e in session_steps(plan, 1) if e.kind == "ask"]
+    assert found == [
+        ("ask-nasa-tlx-manual", "manual"),
+        ("ask-nasa-tlx-manual-2", "manual-2"),
+    ]
+
+
+@pytest.mark.parametrize(
+    ("label", "said"),
+    [
+        ("after", "manual-after is driven in step 2 too"),
+        ("After", "label is 'After'; give 1 to 20 small letters"),
+        ("../x", "label is '../x'"),
+        ("a" * 21, "give 1 to 20"),
+    ],
+)
+def test_labels_that_tables_could_not_tell_apart_are_refused_with_their_line(
+    label: str, said: str
+) -> None:
+    first = "  - {kind: drive, condition: manual, label: after}\n"
+    second = f'  - {{kind: drive, condition: manual, label: "{label}"}}\n'
+    with pytest.raises(ValueError, match=f"line 5: step 3 .*{said}"):
+        parsed_plan(f"{HEAD}{first}{second}")
+
+
+MINE = "name: mine\nspeed: 80 km/h\nroad: {length: 900}\n"
+
+
+@pytest.mark.parametrize(
+    ("plan", "said"),
+    [
+        ("title: a\nscenario: nowhere\n", r"line 2: scenario 'nowhere' is not known"),
+        ("title: a\nscenario: mine.yaml\n", "line 2: scenario mine.yaml is not there"),
+        ("title: a\nscenario: /mine.yaml\n", "line 2: .*beside the plan"),
+        ("title: a\nscenario: ../mine.yaml\n", "line 2: .*beside the plan"),
+        ("title: a\nscenario: bad.yaml\n", "line 2: bad.yaml, line 1: nome"),
+        ("title: a\nspeed_kmh: 5\n", "drive-manual: speed is"),
+    ],
+)
+def test_scenarios_that_cannot_be_are_refused_with_their_line(
+    tmp_path: Path, plan: str, said: str
+) -> None:
+    (tmp_path / "bad.yaml").write_text(MINE.replace("name", "nome"))
+    file = tmp_path / "plan.yaml"
+    file.write_text(f"{plan}steps: [{{kind: drive, condition: manual}}]\n")
+    with pytest.raises(ValueError, match=said):
+        read_plan(file)
+
+
+def test_scenario_of_a_drive_is_refused_with_the_line_of_the_drive() -> None:
+    drive = "  - {kind: drive, condition: manual, scenario: obstacel}\n"
+    with pytest.raises(ValueError, match=r"line 4: step 2 .*did you mean obstacle"):
+        parsed_plan(f"{HEAD}{drive}")
+
+
+def test_curves_too_tight_for_the_speed_are_refused_with_their_line(
+    tmp_path: Path,
+) -> None:
+    road = "road: {length: 900, stations: [{at: 0, radius: 160}]}\n"
+    (tmp_path / "bend.yaml").write_text(f"name: bend\nspeed: 50 km/h\n{road}")
+    file = tmp_path / "plan.yaml"
+    drive = "{kind: drive, condition: manual, scenario: bend.yaml}"
+    file.write_text(f"title: a\nspeed_kmh: 110\nsteps:\n  - {drive}\n")
+    with pytest.raises(ValueError, match=r"line 4: step 1 .*scenario bend"):
+        read_plan(file)
+
+
+def test_scenario_gives_length_and_speed_unless_the_plan_does(tmp_path: Path) -> None:
+    (tmp_path / "mine.yaml").write_text(MINE)
+    file = tmp_path / "plan.yaml"
+    head = (
+        "title: a\nscenario: mine.yaml\n%ssteps: [{kind: drive, condition: manual}]\n"
+    )
+
+    def driven(more: str = "") -> tuple[float, float, str]:
+        file.write_text(head % more)
+        session = Session(tmp_path)
+        session.begin("P01") if not session.people() else None
+        trial = session.trial_of("P01", session.standing("P01").step)
+        session.close()
+        return trial.length, trial.speed, trial.scenario.name  # type: ignore[union-attr]
+
+    assert driven() == (900.0, pytest.approx(80.0 / 3.6), "mine")
+    (tmp_path / "session.sqlite").unlink()
+    more = "length: 500\nspeed_kmh: 60\n"
+    assert driven(more) == (500.0, pytest.approx(60.0 / 3.6), "mine")
+
+
+def test_who_has_begun_keeps_the_scenario_they_began_with(tmp_path: Path) -> None:
+    (tmp_path / "mine.yaml").write_text(MINE)
+    (tmp_path / "plan.yaml").write_text(
+        "title: a\nscenario: mine.yaml\nsteps: [{kind: drive, condition: manual}]\n"
+    )
+    session = Session(tmp_path)
+    session.begin("P01")
+    session.close()
+    (tmp_path / "mine.yaml").write_text(MINE.replace("900", "700"))
+    again = Session(tmp_path)
+    assert again.plan_version == 2
+    again.begin("P02")
+    step = again.standing("P01").step
+    lengths = [again.trial_of(who, step).length for who in ("P01", "P02")]
+    again.close()
+    assert lengths == [900.0, 700.0]
+
+
+def test_a_plan_from_elsewhere_brings_its_scenarios(tmp_path: Path) -> None:
+    (tmp_path / "mine.yaml").write_text(MINE)
+    plan = tmp_path / "my-plan.yaml"
+    plan.write_text(
+        "title: a\nscenario: mine.yaml\nsteps: [{kind: drive, condition: manual}]\n"
+    )
+    given = ["session", "new", str(tmp_path / "study"), "--plan", str(plan)]
+    assert main(given) == 0
+    assert (tmp_path / "study" / "mine.yaml").read_text() == MINE
+    Session(tmp_path / "study").close()
 
 
 @pytest.mark.parametrize(
@@ -60,7 +221,6 @@ def test_a_condition_that_would_be_driven_twice_is_refused_with_its_line() -> No
     [
         ("title: ' '", "title is empty"),
         ("title: a\nseed: -1", "seed is -1; give 0 to"),
-        ("title: a\nspeed_kmh: .nan", "drive-manual: speed is nan"),
         (
             "title: a\nparameters: {traffic.nothing: 1}",
             "no parameter 'traffic.nothing'",

@@ -13,11 +13,8 @@ from hypothesis import strategies as st
 from costeer.devices.head.calibration import HeadCalibration, save_calibration
 from costeer.devices.head.source import HeadDescription
 from costeer.sessions.attempts import ABORTED, RUNNING, Attempts
-from costeer.sessions.plan import (
-    balance,
-    block_order,
-    session_steps,
-)
+from costeer.sessions.balance import balance
+from costeer.sessions.plan import block_order, session_steps
 from costeer.sessions.plan_file import paper_plan_text, parsed_plan
 from costeer.sessions.session import Session
 from costeer.sessions.standing import FINISHED, WHOLE, OutOfStepError

@@ -6,14 +6,8 @@ import re
 from pathlib import Path
 
 from costeer.methods.conditions import CONDITION_NAMES
-from costeer.sessions.plan import (
-    KINDS,
-    ORDERS,
-    Plan,
-    PlanStep,
-    balance,
-    session_steps,
-)
+from costeer.sessions.balance import balance
+from costeer.sessions.plan import KINDS, ORDERS, Plan, PlanStep, session_steps
 from costeer.sessions.plan_file import parsed_plan
 
 ROOT = Path(__file__).parents[2]

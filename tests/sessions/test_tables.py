@@ -15,9 +15,10 @@ from costeer.records.columns import COLUMNS
 from costeer.sessions.answered import answers_in
 from costeer.sessions.attempts import Attempts
 from costeer.sessions.log import clock_jumps
+from costeer.sessions.people import people_in
 from costeer.sessions.questionnaires.definition import own_folder
 from costeer.sessions.session import Session
-from costeer.sessions.tables import people_in, write_all
+from costeer.sessions.tables import write_all
 from costeer.sessions.withdrawal import withdraw
 from costeer.study.measures import trial_row
 from costeer.study.quantities import WORKLOAD_ITEMS

@@ -43,15 +43,21 @@ def report(
         raise ValueError(f"--beside is {beside}, which has no {STUDY_FILE}")
     is_study = (folder / STUDY_FILE).is_file()
     people = None if is_study else _people(folder)
-    with progress("report", NUM_STEPS) as advance:
+    apart = {} if people is None else people.apart
+    with progress("report", NUM_STEPS * (1 + len(apart))) as advance:
         page = remake_report(folder, lambda _: advance(1), people, beside)
+        others = [
+            remake_report(part.study.path, lambda _: advance(1), part)
+            for part in apart.values()
+        ]
     if people is None:
         _tell_missing(trials_without_record(folder))
     elif people.exclusions:
         amount = len(people.exclusions)
         drives = "1 drive is" if amount == 1 else f"{amount} drives are"
         note(f"costeer: {drives} excluded or missing; exclusions.csv says why")
-    typer.echo(page)
+    for each in (page, *others):
+        typer.echo(each)
 
 
 def _people(folder: Path) -> People:
@@ -65,8 +71,14 @@ def _people(folder: Path) -> People:
 
     if (folder / STORE_FILE).is_file():
         from costeer.sessions.tables import write_session
+        from costeer.sessions.withdrawal import made_apart
 
-        return write_session(folder, folder)
+        for file in made_apart(folder):  # of trials that are excluded by now, perhaps
+            file.unlink()
+        people = write_session(folder, folder)
+        for part in people.apart.values():
+            part.study.path.mkdir(parents=True, exist_ok=True)
+        return people
     from costeer.study.plain_folder import people_of_records
 
     return people_of_records(folder)

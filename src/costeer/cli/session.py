@@ -16,7 +16,7 @@ from costeer.cli.session_trial import Rehearsal, power, rehearse_study
 if TYPE_CHECKING:
     from starlette.types import ASGIApp
 
-    from costeer.sessions.plan import Plan
+    from costeer.sessions.session import Session
     from costeer.web.security import Access
     from costeer.web.serving import Running
     from costeer.web.sessions.desk import Desk
@@ -86,6 +86,9 @@ def session(
     length: Annotated[
         float, typer.Option(help="With rehearse: length of a trial [m].")
     ] = 300.0,
+    scenario: Annotated[
+        str, typer.Option(help="With rehearse: that ships with costeer.")
+    ] = "expressway",
     seed: Annotated[
         int, typer.Option(help="With rehearse and power: seed of all that is random.")
     ] = 1,
@@ -116,7 +119,9 @@ def session(
         costeer session rehearse my-rehearsal --participants 2
         costeer report my-study
     """
-    rehearsal = Rehearsal(participants, seed, accidents, haste, conditions, length)
+    rehearsal = Rehearsal(
+        participants, seed, accidents, haste, conditions, length, scenario
+    )
     lab = _Lab(wheel, head, 1.0 if haste is None else haste)
     acts = {
         "new": partial(_new, folder, plan),
@@ -141,8 +146,14 @@ def _new(folder: Path, plan: Path | None) -> None:
         OSError: If it cannot be written.
     """
     from costeer.base.files import read_whole, write_text
-    from costeer.sessions.plan import PLAN_FILE, balance
+    from costeer.sessions.balance import balance
+    from costeer.sessions.plan import PLAN_FILE
     from costeer.sessions.plan_file import check_words, paper_plan_text, parsed_plan
+    from costeer.sessions.scenarios import (
+        is_file_name,
+        scenario_notes,
+        scenario_texts,
+    )
 
     text = paper_plan_text().encode() if plan is None else read_whole(plan)
     found = parsed_plan(text, str(plan or PLAN_FILE))
@@ -153,6 +164,13 @@ def _new(folder: Path, plan: Path | None) -> None:
             f"{folder} has a {PLAN_FILE} already; edit that, or give another folder"
         )
     folder.mkdir(parents=True, exist_ok=True)
+    own = Path() if plan is None else plan.parent
+    for name, scenario in scenario_texts(found, own).items():
+        if is_file_name(name):
+            (folder / name).parent.mkdir(parents=True, exist_ok=True)
+            write_text(folder / name, scenario)
+    for told in scenario_notes(found, own):
+        note(f"costeer: {told}")
     write_text(target, text.decode("utf-8"))
     even = balance(found, range(1, found.participants + 1)).is_even
     told = "balanced" if even else "not balanced over so many"
@@ -174,6 +192,7 @@ class _Lab(NamedTuple):
 def _run(folder: Path, lab: _Lab, where: tuple[str, int], browser: bool) -> None:
     """Serve both pages until Ctrl-C."""
     from costeer.sessions.plan_file import check_words
+    from costeer.sessions.scenarios import scenario_notes
     from costeer.sessions.session import Session
     from costeer.study.folder import locked
     from costeer.web.security import access_for
@@ -188,7 +207,9 @@ def _run(folder: Path, lab: _Lab, where: tuple[str, int], browser: bool) -> None
             signal.signal(getattr(signal, name), _stop)
     session = Session(folder)
     check_words(session.plan, folder)
-    _compile(session.plan, devices)
+    for told in scenario_notes(session.plan, folder):
+        note(f"costeer: {told}")
+    _compile(session, devices)
     with locked(folder):  # a second one would take running drives for aborted
         desk = Desk(session, devices)
         try:
@@ -202,15 +223,17 @@ def _run(folder: Path, lab: _Lab, where: tuple[str, int], browser: bool) -> None
         raise typer.Exit(1)
 
 
-def _compile(plan: Plan, devices: Devices) -> None:
+def _compile(session: Session, devices: Devices) -> None:
     """Have the machine code of all drives ready before anybody waits for it."""
     from costeer.runtime.cabin import Cabin
     from costeer.runtime.setup import DriveSetup, check_drive
     from costeer.sessions.plan import session_steps, trial_of
 
-    steps = [step for step in session_steps(plan, 1) if step.drives]
-    trials = {step.method: trial_of(plan, step, 1) for step in steps}
-    for trial in trials.values():
+    plan, version = session.plan, session.plan_version
+    steps = {(s.method, s.scenario): s for s in session_steps(plan, 1) if s.drives}
+    for step in steps.values():
+        scenario = session.versions.scenario(version, step.scenario)
+        trial = trial_of(plan, step, 1, scenario)
         setup = DriveSetup(trial, devices.wheel, devices.calibration)
         check_drive(setup._replace(haste=devices.haste))
         Cabin(setup).warm_up()
@@ -308,7 +331,7 @@ def _export(folder: Path, to: str, out: Path | None) -> None:
     people = export_session(folder, to, out)
     typer.echo(out)
     note(
-        f"costeer: {len(people.drives)} trials; excluded or missing: "
+        f"costeer: {len(people.all_drives)} trials; excluded or missing: "
         f"{len(people.exclusions)}, exclusions.csv of --format csv says why"
     )
 

@@ -24,6 +24,7 @@ class Rehearsal(NamedTuple):
     haste: float | None
     conditions: str
     length: float
+    scenario: str
 
 
 def power(
@@ -37,15 +38,16 @@ def power(
     """
     from costeer.base.files import write_text
     from costeer.cli.console import progress
-    from costeer.sessions.plan import PLAN_FILE, session_steps
+    from costeer.sessions.plan import PLAN_FILE
     from costeer.sessions.plan_file import read_plan
-    from costeer.sessions.power import PowerSettings, planned_power
+    from costeer.sessions.power import PowerSettings, compared_steps, planned_power
 
     found = read_plan(plan or folder / PLAN_FILE)
     settings = PowerSettings(drivers=drivers, seed=seed, intention=intention)
-    total = drivers * sum(each.kind == "drive" for each in session_steps(found, 1))
+    total = drivers * len(compared_steps(found))
+    beside = plan.parent if plan else folder
     with progress("trials", total) as advance:
-        powers = planned_power(found, settings, lambda done, of: advance(1))
+        powers = planned_power(found, settings, lambda *_: advance(1), beside)
     planned = found.participants
     rows, lines = [], ["measure,condition,d_z,low,high,participants,power,low,high"]
     for each in powers:
@@ -94,6 +96,7 @@ def rehearse_study(folder: Path, said: Rehearsal) -> None:
         haste=usual.haste if said.haste is None else said.haste,
         length=said.length,
         conditions=parse_conditions(said.conditions) if said.conditions else (),
+        scenario=said.scenario,
     )
     found = rehearse(folder, settings, lambda text: note(f"costeer: {text}"))
     killed = ", ".join(f"{what} {n}" for what, n in found.accidents.items())

@@ -38,13 +38,13 @@ class BidsTrial(NamedTuple):
 
     Attributes:
         participant: Pseudonym.
-        condition: Names the task.
+        name: Of the trial among the participant's: names the task.
         record: Its file.
         files: What is kept of it in `sourcedata`: record, trace of the wheel.
     """
 
     participant: str
-    condition: str
+    name: str
     record: Path
     files: tuple[Path, ...]
 
@@ -166,7 +166,7 @@ def _write_answers(answers: BidsTable, participant: str, out: Path) -> None:
 def _write_trial(trial: BidsTrial, out: Path) -> None:
     record = read_record(trial.record)
     room = _room(out, trial.participant, "motion")
-    stem = _stem(trial.participant, trial.condition)
+    stem = _stem(trial.participant, trial.name)
     tracked = f"{stem}_tracksys-wheel"
     declared = [
         c for c in (*COLUMNS, *record.method_columns) if c.name in record.columns
@@ -227,8 +227,8 @@ def _sidecar(
     rows = next(iter(record.columns.values())).size
     about = record.metadata
     return {
-        "TaskName": trial.condition,
-        "TaskDescription": f"Drive in condition {trial.condition}",
+        "TaskName": trial.name,
+        "TaskDescription": f"Drive in condition {trial.name}",
         "SamplingFrequency": RATE,
         "TrackingSystemName": "wheel",
         "DeviceSerialNumber": "n/a",

@@ -21,7 +21,8 @@ class Answered(NamedTuple):
     """A questionnaire that somebody has answered.
 
     Attributes:
-        row: Participant, slot, condition, step, instrument, version, answered_at.
+        row: Participant, slot, condition and label of the trial before, step,
+            instrument, version, answered_at.
         values: By item.
         scores: By name; NaN where they cannot be told.
     """
@@ -38,15 +39,22 @@ def answers_in(session: Session) -> list[Answered]:
     steps: dict[tuple[str, str], list[Row]] = {}
     for row in rows:
         steps.setdefault((row["participant"], row["step"]), []).append(row)
-    return [_answered(session.folder, own, slots) for own in steps.values()]
+    labels = {(w, s.id): s.label for w in slots for s in session.steps_of(w)}
+    return [_answered(session.folder, own, slots, labels) for own in steps.values()]
 
 
-def _answered(folder: Path, rows: list[Row], slots: Mapping[str, int]) -> Answered:
+def _answered(
+    folder: Path,
+    rows: list[Row],
+    slots: Mapping[str, int],
+    labels: Mapping[tuple[str, str], str],
+) -> Answered:
     first = rows[0]
     values = {row["item"]: json.loads(row["value"]) for row in rows}
     names = ("participant", "condition", "step", "instrument", "version", "language")
     about: Cells = {name: first[name] for name in names}
     about |= {
+        "label": labels.get((first["participant"], first["step"]), ""),
         "slot": slots[first["participant"]],
         "answered_at": first["utc"],
         "monotonic": first["monotonic"],

@@ -11,8 +11,9 @@ from costeer.base.files import prepare_folder
 from costeer.records.record import read_record
 from costeer.sessions.answered import answer_rows, answers_in
 from costeer.sessions.fields import FIELDS, PARTICIPANTS_FILE, QUESTIONNAIRES_FILE
+from costeer.sessions.people import people_in
 from costeer.sessions.session import Session
-from costeer.sessions.tables import participant_rows, people_in, write_all
+from costeer.sessions.tables import participant_rows, write_all
 from costeer.study.people import Drive, People
 
 FORMATS = ("csv", "bids", "matlab", "mcap", "all")
@@ -74,7 +75,7 @@ def _matlab(folder: Path, out: Path) -> People:
     from costeer.export.matlab import write_matlab
 
     people = _people(folder)
-    for drive in people.drives:
+    for drive in people.all_drives:
         write_matlab(read_record(drive.record), out / f"{_stem(drive)}.mat")
     return people
 
@@ -83,13 +84,13 @@ def _mcap(folder: Path, out: Path) -> People:
     from costeer.export.mcap import write_mcap
 
     people = _people(folder)
-    for drive in people.drives:
+    for drive in people.all_drives:
         write_mcap(read_record(drive.record), out / f"{_stem(drive)}.mcap")
     return people
 
 
 def _stem(drive: Drive) -> str:
-    return f"{drive.participant}-{drive.condition}"
+    return f"{drive.participant}-{drive.name}"
 
 
 def _people(folder: Path) -> People:
@@ -123,8 +124,8 @@ def _bids(folder: Path, out: Path) -> People:
             participants=BidsTable(rows, _about(PARTICIPANTS_FILE) | _DEMOGRAPHICS),
             answers=BidsTable(answers, _about(QUESTIONNAIRES_FILE)),
             trials=[
-                BidsTrial(d.participant, d.condition, d.record, _kept(d.record))
-                for d in people.drives
+                BidsTrial(d.participant, d.name, d.record, _kept(d.record))
+                for d in people.all_drives
             ],
             tables=sorted(Path(room).glob("*.csv")),
         )

@@ -36,6 +36,10 @@ _CONDITION = Field(
     "of the drive, or of the drive before; empty without one",
     range="Table IV",
 )
+_LABEL = Field(
+    "label",
+    "of the trial, or of the trial before: names it among all of the participant",
+)
 _ATTEMPT = Field("attempt", "number of the attempt at the step", range="1 ...")
 _REASON = Field("reason", "why, in the experimenter's or costeer's words")
 _MONOTONIC = Field(
@@ -82,6 +86,7 @@ FIELDS: dict[str, tuple[Field, ...]] = {
         _WHO,
         _SLOT,
         _CONDITION,
+        _LABEL,
         _STEP,
         *_INSTRUMENT,
         Field("language", "in which it was asked"),
@@ -94,6 +99,7 @@ FIELDS: dict[str, tuple[Field, ...]] = {
         _WHO,
         _SLOT,
         _CONDITION,
+        _LABEL,
         _STEP,
         *_INSTRUMENT,
         Field("score", "name of the score", source="instrument"),
@@ -133,6 +139,8 @@ FIELDS: dict[str, tuple[Field, ...]] = {
         _ATTEMPT,
         Field("kind", "trial or practice", range="drive or practise"),
         _CONDITION,
+        _LABEL,
+        Field("scenario", "that was driven on, as the plan names it"),
         Field("order", "place among the trials; 0 for a practice", range="0 ..."),
         Field("state", "how it ended", range="finished, aborted or running"),
         Field(

@@ -9,15 +9,17 @@ from __future__ import annotations
 
 import hashlib
 import math
+import re
 from collections import Counter
-from collections.abc import Mapping, Sequence
-from itertools import pairwise
+from collections.abc import Mapping, Sequence, Set
+from itertools import count
 from typing import NamedTuple
 
 import numpy as np
 
 from costeer.loop.scenario import TrialSetup
-from costeer.methods.conditions import MANUAL
+from costeer.scenarios.definition import Scenario
+from costeer.scenarios.reading import chosen
 from costeer.study.design import williams_square
 
 KINDS = ("instruct", "consent", "ask", "practise", "drive", "break", "trials")
@@ -48,6 +50,9 @@ class PlanStep(NamedTuple):
         order: Of a block of trials, one of `ORDERS`.
         after: What follows each trial of a block.
         break_every: A break after so many trials of a block; 0 for none.
+        scenario: Of a drive or block, a name or a file beside the plan; the plan's if
+            empty.
+        label: Put behind the condition to tell drives of the same one apart.
     """
 
     kind: str
@@ -62,6 +67,8 @@ class PlanStep(NamedTuple):
     order: str = "williams"
     after: tuple[PlanStep, ...] = ()
     break_every: int = 0
+    scenario: str = ""
+    label: str = ""
 
 
 class Plan(NamedTuple):
@@ -74,8 +81,9 @@ class Plan(NamedTuple):
         participants: How many are planned.
         seed: Of leaders and of random orders.
         method: Guidance of the assisted trials.
-        length: Of the course [m].
-        speed_kmh: At the start, and suggested [km/h].
+        length: Of the course [m]; the scenario's if NaN.
+        speed_kmh: At the start, and suggested [km/h]; the scenario's if NaN.
+        scenario: Of drives that name none, a name or a file beside the plan.
         car: Name of the car, or a file.
         intention: What starts a lane change: network, indicator or off.
         parameters: Dotted names and values; `costeer parameters` lists them.
@@ -89,13 +97,45 @@ class Plan(NamedTuple):
     participants: int = 12
     seed: int = 1
     method: str = "ibhs"
-    length: float = 8000.0
-    speed_kmh: float = 70.0
+    length: float = math.nan
+    speed_kmh: float = math.nan
+    scenario: str = "expressway"
     car: str = "default"
     intention: str = "network"
     parameters: Mapping[str, float] = {}
     self_paced: bool = True
     about: str = ""
+
+    @property
+    def speed(self) -> float:
+        """At the start, and suggested [m/s]; NaN for the scenario's."""
+        return self.speed_kmh / 3.6
+
+
+class Trial(NamedTuple):
+    """What is driven in a step.
+
+    Attributes:
+        condition: Of Table IV.
+        scenario: Name or file.
+        label: Names a trial among all that a participant drives: the condition, and
+            what tells it from others of it; empty for a practice.
+        occasion: How often its condition was planned on its scenario so far, from 1; 0
+            for a practice.
+    """
+
+    condition: str
+    scenario: str
+    label: str = ""
+    occasion: int = 0
+
+    @property
+    def name(self) -> str:
+        """Of the trial, or of what is practised."""
+        return self.label or self.condition
+
+
+_NOTHING = Trial("", "")
 
 
 class Step(NamedTuple):
@@ -112,6 +152,9 @@ class Step(NamedTuple):
         longest_minutes: Of a practice [min].
         sdlp_below: Criterion of a practice [m]; NaN for none.
         order: Place among the trials, from 1; 0 for what is no trial.
+        scenario: Of a drive: a name, or a file beside the plan.
+        label: Of a trial, and of what follows it: `Trial.label`.
+        occasion: Of a trial: `Trial.occasion`.
     """
 
     id: str
@@ -124,6 +167,9 @@ class Step(NamedTuple):
     longest_minutes: float = 0.0
     sdlp_below: float = math.nan
     order: int = 0
+    scenario: str = ""
+    label: str = ""
+    occasion: int = 0
 
     @property
     def drives(self) -> bool:
@@ -135,9 +181,60 @@ DONE = Step("done", "done")
 """After the last step."""
 
 
-def plan_hash(plan: Plan) -> str:
-    """What tells two plans apart, whatever their comments say."""
-    return hashlib.sha256(repr(plan).encode()).hexdigest()[:16]
+def plan_hash(plan: Plan, scenarios: Mapping[str, str]) -> str:
+    """What tells two plans apart, whatever their comments say.
+
+    Args:
+        plan: As it was read.
+        scenarios: Text of each of its scenarios by name.
+    """
+    told = repr((plan, sorted(scenarios.items())))
+    return hashlib.sha256(told.encode()).hexdigest()[:16]
+
+
+def given_or_none(value: float) -> float | None:
+    """A number of a plan; None where it leaves it to the scenario."""
+    return None if math.isnan(value) else value
+
+
+def planned_trials(plan: Plan) -> dict[tuple[int, str], Trial]:
+    """Trials of a plan by the place of their step and their condition.
+
+    Labels follow from the plan, not from the order in which somebody drives.
+    """
+    found: dict[tuple[int, str], Trial] = {}
+    labels = set[str]()
+    for place, each in enumerate(plan.steps):
+        for name in trial_conditions(each):
+            where = each.scenario or plan.scenario
+            alike = [t for t in found.values() if t[:2] == (name, where)]
+            label = _label(name, each, plan, labels)
+            labels.add(label)
+            found[place, name] = Trial(name, where, label, len(alike) + 1)
+    return found
+
+
+def trial_conditions(each: PlanStep) -> tuple[str, ...]:
+    """Conditions that an entry of a plan drives as trials."""
+    if each.kind == "trials":
+        return each.conditions
+    return (each.condition,) if each.kind == "drive" else ()
+
+
+def _label(name: str, each: PlanStep, plan: Plan, taken: Set[str]) -> str:
+    """A condition, and behind it what tells the trial from others of it."""
+    elsewhere = each.scenario not in ("", plan.scenario)
+    more = each.label or (scenario_word(each.scenario) if elsewhere else "")
+    label = f"{name}-{more}" if more else name
+    if each.label or label not in taken:
+        return label
+    return next(again for n in count(2) if (again := f"{label}-{n}") not in taken)
+
+
+def scenario_word(scenario: str) -> str:
+    """A scenario in names of files and labels: letters, digits and hyphens."""
+    stem = scenario.rpartition("/")[2].rpartition(".")[0] or scenario
+    return "-".join(re.findall(r"[a-z0-9]+", stem.lower())) or "scenario"
 
 
 def session_steps(plan: Plan, slot: int) -> tuple[Step, ...]:
@@ -147,18 +244,22 @@ def session_steps(plan: Plan, slot: int) -> tuple[Step, ...]:
         plan: Of the study.
         slot: Of the participant, from 1: it picks the order of the trials.
     """
+    planned = planned_trials(plan)
     steps: list[Step] = []
     trials = 0
-    before = ""
-    for each in plan.steps:
+    before = _NOTHING
+    for place, each in enumerate(plan.steps):
         if each.kind == "trials":
-            steps += _block(plan, each, slot, trials)
-            trials += len(each.conditions)
+            order = block_order(each, slot, plan.seed)
+            driven = [planned[place, name] for name in order]
+            steps += _block(plan, each, driven, trials)
+            trials, before = trials + len(driven), driven[-1]
             continue
-        trials += each.kind == "drive"
-        place = trials if each.kind == "drive" else 0
-        before = each.condition or before
-        steps.append(_step(plan, each, each.condition or before, place))
+        if each.kind == "drive":
+            trials, before = trials + 1, planned[place, each.condition]
+        elif each.kind == "practise":
+            before = Trial(each.condition, each.scenario or plan.scenario)
+        steps.append(_step(plan, each, before, trials if each.kind == "drive" else 0))
     return (*_numbered(steps), DONE)
 
 
@@ -175,41 +276,56 @@ def block_order(step: PlanStep, slot: int, seed: int) -> tuple[str, ...]:
     return tuple(names[place] for place in rows[(slot - 1) % len(rows)])
 
 
-def _block(plan: Plan, step: PlanStep, slot: int, before: int) -> list[Step]:
+def _block(
+    plan: Plan, step: PlanStep, driven: Sequence[Trial], before: int
+) -> list[Step]:
     """Trials of a block, with what follows each and the breaks between."""
     steps: list[Step] = []
-    order = block_order(step, slot, plan.seed)
-    for count, name in enumerate(order, start=1):
+    for place, trial in enumerate(driven, start=1):
         drive = PlanStep("drive", text=step.text, method=step.method)
-        steps.append(_step(plan, drive, name, before + count))
-        steps += [_step(plan, each, name, 0) for each in step.after]
-        if step.break_every and count % step.break_every == 0 and count < len(order):
+        steps.append(_step(plan, drive, trial, before + place))
+        steps += [_step(plan, each, trial, 0) for each in step.after]
+        is_due = step.break_every and place % step.break_every == 0
+        if is_due and place < len(driven):
             minutes = 0.0 if math.isnan(step.minutes) else step.minutes
             steps.append(Step("break", "break", text="break", minutes=minutes))
     return steps
 
 
-def _step(plan: Plan, each: PlanStep, condition: str, order: int) -> Step:
-    """An entry of the plan for one participant; its id is made unique later."""
+def _step(plan: Plan, each: PlanStep, trial: Trial, order: int) -> Step:
+    """An entry of the plan for one participant; its id is made unique later.
+
+    Args:
+        plan: Of the study.
+        each: The entry.
+        trial: That it drives, or that was driven before it.
+        order: Place among the trials.
+    """
     drives = each.kind in ("practise", "drive")
-    about = condition if drives else each.instrument.removeprefix(each.kind)
-    follows = condition if each.kind == "ask" and condition else ""
+    about = trial.name if drives else each.instrument.removeprefix(each.kind)
+    follows = trial.name if each.kind == "ask" else ""
     parts = [each.kind, about or each.text[:20], follows]
     words = "-".join(part for part in parts if part).lower()
+    has_trial = drives or each.kind == "ask"
     return Step(
         id="".join(c if c.isalnum() or c == "-" else "-" for c in words).strip("-"),
         kind=each.kind,
         text=each.text,
         instrument=each.instrument,
-        condition=condition if drives or follows else "",
+        condition=trial.condition if has_trial else "",
         method=(each.method or plan.method) if drives else "",
-        minutes=0.0 if math.isnan(each.minutes) else each.minutes,
-        longest_minutes=0.0
-        if math.isnan(each.longest_minutes)
-        else each.longest_minutes,
+        minutes=_number(each.minutes),
+        longest_minutes=_number(each.longest_minutes),
         sdlp_below=each.sdlp_below,
         order=order,
+        scenario=trial.scenario if drives else "",
+        label=trial.label if has_trial else "",
+        occasion=trial.occasion if each.kind == "drive" else 0,
     )
+
+
+def _number(value: float) -> float:
+    return 0.0 if math.isnan(value) else value
 
 
 def _numbered(steps: Sequence[Step]) -> list[Step]:
@@ -223,69 +339,30 @@ def _numbered(steps: Sequence[Step]) -> list[Step]:
     return named
 
 
-def trial_of(plan: Plan, step: Step, slot: int) -> TrialSetup:
+def trial_of(plan: Plan, step: Step, slot: int, scenario: Scenario) -> TrialSetup:
     """The trial that a step drives.
 
     Args:
         plan: Of the study.
         step: That drives.
         slot: Of the participant; it picks the leaders.
+        scenario: That the step names.
+
+    Raises:
+        ValueError: If a curve of the scenario is too tight for the speed.
     """
-    speed = plan.speed_kmh / 3.6
-    practice = 1.5 * speed * 60.0 * step.longest_minutes
+    length, speed = given_or_none(plan.length), given_or_none(plan.speed)
+    course = chosen(scenario, length, speed)
+    practice = 1.5 * course.speed * 60.0 * step.longest_minutes
     return TrialSetup(
         participant=slot,
         seed=plan.seed,
         condition=step.condition,
         method=step.method,
-        length=max(practice, 100.0) if step.kind == "practise" else plan.length,
-        speed=speed,
+        length=max(practice, 100.0) if step.kind == "practise" else course.length,
+        speed=course.speed,
         car=plan.car,
         events=True,
         parameters=tuple(plan.parameters.items()),
+        scenario=scenario,
     )
-
-
-class Balance(NamedTuple):
-    """How balanced the orders of some slots are.
-
-    Attributes:
-        places: How often each condition stands in each place, `{name: counts}`.
-        follows: How often each condition follows each other, `{(before, name): count}`.
-    """
-
-    places: dict[str, list[int]]
-    follows: dict[tuple[str, str], int]
-
-    @property
-    def is_even(self) -> bool:
-        """Whether no condition is favoured by place or predecessor."""
-        places = [count for counts in self.places.values() for count in counts]
-        return len(set(places)) <= 1 and len(set(self.follows.values())) <= 1
-
-
-def balance(plan: Plan, slots: Sequence[int]) -> Balance:
-    """How balanced the first block of trials is over some slots.
-
-    Args:
-        plan: Of the study.
-        slots: Of the participants who count, each perhaps several times.
-    """
-    block = next((each for each in plan.steps if each.kind == "trials"), None)
-    if block is None:
-        return Balance({}, {})
-    names = block.conditions
-    places = {name: [0] * len(names) for name in names}
-    follows = {(a, b): 0 for a in names for b in names if a != b}
-    for slot in slots:
-        order = block_order(block, slot, plan.seed)
-        for place, name in enumerate(order):
-            places[name][place] += 1
-        for pair in pairwise(order):
-            follows[pair] += 1
-    return Balance(places, follows)
-
-
-def manual_steps(steps: Sequence[Step]) -> list[Step]:
-    """Trials without guidance."""
-    return [each for each in steps if each.kind == "drive" and each.condition == MANUAL]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from importlib.resources import files
@@ -15,17 +16,21 @@ from costeer.loop.scenario import check_setup, loop_parameters
 from costeer.methods.conditions import CONDITION_NAMES
 from costeer.methods.conditions import condition as condition_named
 from costeer.runtime.setup import INTENTION_SOURCES
+from costeer.scenarios.reading import chosen
 from costeer.sessions.plan import (
     KINDS,
     ORDERS,
     PLAN_FILE,
     Plan,
     PlanStep,
+    given_or_none,
+    planned_trials,
     session_steps,
     trial_of,
 )
 from costeer.sessions.questionnaires.instrument import load_instrument
 from costeer.sessions.questionnaires.texts import load_texts
+from costeer.sessions.scenarios import scenario_beside
 from costeer.study.design import MOST_CONDITIONS
 
 _OWN = {
@@ -34,14 +39,19 @@ _OWN = {
     "ask": {"text", "instrument"},
     "practise": {
         *("text", "condition", "method", "minutes", "longest_minutes", "sdlp_below"),
+        "scenario",
     },
-    "drive": {"text", "condition", "method"},
+    "drive": {"text", "condition", "method", "scenario", "label"},
     "break": {"text", "minutes"},
     "trials": {
         *("text", "method", "minutes", "conditions", "order", "after", "break_every"),
+        *("scenario", "label"),
     },
 }
 """Entries that mean something for a kind of step."""
+
+LABEL = re.compile(r"[a-z0-9][a-z0-9-]{0,19}")
+"""What tells drives of a condition apart; it stands in names of files."""
 
 LONGEST_MINUTES = 120.0
 """Of a practice or a break."""
@@ -65,8 +75,13 @@ def read_plan(path: Path) -> Plan:
 def parsed_plan(text: bytes | str, name: str = PLAN_FILE) -> Plan:
     """The plan of a text.
 
+    Args:
+        text: UTF-8.
+        name: Of its file, for messages; files of scenarios lie beside it.
+
     Raises:
         ValueError: If it cannot be.
+        OSError: If a scenario cannot be read.
     """
     given = parsed_mapping(text, name)
     plan = filled(Plan, given, name)
@@ -75,7 +90,8 @@ def parsed_plan(text: bytes | str, name: str = PLAN_FILE) -> Plan:
     wheres = [f"{place} {n}" for n, place in enumerate(places, start=1)]
     for entry, where in zip(plan.steps, wheres, strict=True):
         _check_step(entry, where)
-    _check_cells(plan, wheres)
+    _check_labels(plan, wheres)
+    _check_scenarios(plan, given, name, wheres)
     _check_trials(plan, name)
     return plan
 
@@ -234,24 +250,49 @@ def _check_block(step: PlanStep, where: str) -> None:
         _check_step(each, f"{where}, after, entry {place}", inner=True)
 
 
-def _check_cells(plan: Plan, wheres: Sequence[str]) -> None:
-    """Refuse a condition that a participant would drive twice as a trial.
-
-    Tables and tests have one trial of each participant and condition.
+def _check_labels(plan: Plan, wheres: Sequence[str]) -> None:
+    """Refuse trials that tables could not tell apart.
 
     Raises:
-        ValueError: Naming the second.
+        ValueError: Naming the second, or a label that is none.
     """
-    driven: dict[str, str] = {}
+    places: dict[str, str] = {}
+    for (place, _), trial in planned_trials(plan).items():
+        where = f"{wheres[place]} ({plan.steps[place].kind})"
+        label = plan.steps[place].label
+        if label and not LABEL.fullmatch(label):
+            raise ValueError(
+                f"{where}: label is {label!r}; give 1 to 20 small letters, digits and "
+                "hyphens, as after"
+            )
+        if trial.label in places:
+            raise ValueError(
+                f"{where}: {trial.label} is driven in {places[trial.label]} too; give "
+                "one of them another label, as label: after"
+            )
+        places[trial.label] = wheres[place].rpartition(": ")[2]
+
+
+def _check_scenarios(
+    plan: Plan, given: Mapping[str, Any], name: str, wheres: Sequence[str]
+) -> None:  # Any: as YAML gives it back
+    """Refuse scenarios that are not there or cannot be driven so.
+
+    Raises:
+        ValueError: Naming the line, the scenario and the way out.
+        OSError: If a file cannot be read.
+    """
+    folder = Path(name).parent
+    speed = given_or_none(plan.speed)
+    line = getattr(given, "lines", {}).get("scenario")
+    head = name if line is None else f"{name}, line {line}"
+    places = {plan.scenario: head}
     for each, where in zip(plan.steps, wheres, strict=True):
-        names = each.conditions if each.kind == "trials" else (each.condition,)
-        for name in names if each.kind in ("drive", "trials") else ():
-            if name in driven:
-                raise ValueError(
-                    f"{where} ({each.kind}): {name} is driven in {driven[name]} too; "
-                    "one trial of each condition counts, make the other one a practise"
-                )
-            driven[name] = where.rpartition(": ")[2]
+        if each.scenario:
+            places.setdefault(each.scenario, f"{where} ({each.kind})")
+    for scenario, where in places.items():
+        with _at(where):
+            chosen(scenario_beside(scenario, folder), None, speed)
 
 
 def _check_trials(plan: Plan, name: str) -> None:
@@ -259,17 +300,19 @@ def _check_trials(plan: Plan, name: str) -> None:
 
     Raises:
         ValueError: Naming the value and the way out.
+        OSError: If a scenario cannot be read.
     """
-    methods = set[str]()
+    checked = set[tuple[str, str]]()
     for step in session_steps(plan, 1):
         if not step.drives:
             continue
-        trial = trial_of(plan, step, 1)
+        scenario = scenario_beside(step.scenario, Path(name).parent)
         with _at(f"{name}: {step.id}"):
+            trial = trial_of(plan, step, 1, scenario)
             check_setup(trial)
-            if step.method not in methods:  # its parameters are the same
+            if (step.method, step.scenario) not in checked:  # parameters are the same
                 loop_parameters(trial)
-        methods.add(step.method)
+        checked.add((step.method, step.scenario))
 
 
 @contextmanager

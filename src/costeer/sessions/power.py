@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
@@ -21,6 +22,7 @@ from costeer.loop.scenario import TrialSetup
 from costeer.loop.trial import simulate_trial
 from costeer.methods.conditions import MANUAL
 from costeer.sessions.plan import Plan, Step, session_steps, trial_of
+from costeer.sessions.scenarios import scenario_beside
 from costeer.study.jobs import default_jobs, run_jobs
 from costeer.study.measures import lane_change_rows, trial_row
 from costeer.study.statistics import MEASURES
@@ -44,7 +46,7 @@ class Power(NamedTuple):
 
     Attributes:
         measure: That is compared.
-        condition: Compared with manual.
+        condition: Label of the trial that is compared with the manual one.
         effect: Mean difference over its standard deviation, d_z [-].
         effect_low: Of its 95 % interval over the simulated drivers [-].
         effect_high: The same.
@@ -95,33 +97,58 @@ def planned_power(
     plan: Plan,
     settings: PowerSettings,
     progress: Callable[[int, int], None] = lambda done, of: None,
+    folder: Path = Path(),
 ) -> list[Power]:
     """Power of a planned study for each measure and condition.
+
+    Each first trial of a condition is compared with the first manual one on its
+    scenario; nobody learns here, so that driving again would show nothing.
 
     Args:
         plan: Of the study.
         settings: How much is simulated.
         progress: Is told how many trials are done, and of how many.
+        folder: Of the plan and its scenarios.
 
     Raises:
         ValueError: If the plan drives no manual trial, or a setting cannot be.
     """
     _check(settings)
-    steps = [each for each in session_steps(plan, 1) if each.kind == "drive"]
-    if not any(step.condition == MANUAL for step in steps):
-        raise ValueError("the plan drives no manual trial to compare with")
-    measured = simulated_measures(plan, steps, settings, progress)
+    steps = compared_steps(plan)
+    measured = simulated_measures(plan, steps, settings, progress, folder)
     generator = np.random.Generator(
         np.random.PCG64(np.random.SeedSequence([settings.seed, _STREAM]))
     )
     found = []
     for measure, columns in measured.items():
-        names = [name for name in columns if name != MANUAL]
-        differences = np.column_stack([columns[n] - columns[MANUAL] for n in names])
-        known = np.isfinite(differences).all(axis=1)
-        if known.sum() >= 3:
-            found += _powers(measure, names, differences[known], settings, generator)
+        for scenario in dict.fromkeys(step.scenario for step in steps):
+            own = [step for step in steps if step.scenario == scenario]
+            (manual,) = [step.label for step in own if step.condition == MANUAL]
+            if len(own) == 1:
+                continue
+            names = [step.label for step in own if step.label != manual]
+            apart = np.column_stack([columns[n] - columns[manual] for n in names])
+            known = np.isfinite(apart).all(axis=1)
+            if known.sum() >= 3:
+                found += _powers(measure, names, apart[known], settings, generator)
     return found
+
+
+def compared_steps(plan: Plan) -> list[Step]:
+    """First trials of each condition on scenarios where something is compared.
+
+    Raises:
+        ValueError: If there is no manual trial to compare with.
+    """
+    first = [each for each in session_steps(plan, 1) if each.occasion == 1]
+    driven: dict[str, set[str]] = {}
+    for step in first:
+        driven.setdefault(step.scenario, set()).add(step.condition)
+    whole = {where for where, names in driven.items() if MANUAL in names}
+    compared = [each for each in first if each.scenario in whole]
+    if not compared:
+        raise ValueError("the plan drives no manual trial to compare with")
+    return compared
 
 
 def _check(settings: PowerSettings) -> None:
@@ -142,14 +169,16 @@ def simulated_measures(
     steps: Sequence[Step],
     settings: PowerSettings,
     progress: Callable[[int, int], None],
+    folder: Path = Path(),
 ) -> dict[str, dict[str, Numbers]]:
-    """Measures of virtual drivers: measure, condition, shape `(driver,)`."""
+    """Measures of virtual drivers: measure, label of the trial, shape `(driver,)`."""
+    scenarios = [scenario_beside(step.scenario, folder) for step in steps]
     tasks = [
-        trial_of(plan, step, number)._replace(
+        trial_of(plan, step, number, scenario)._replace(
             seed=settings.seed, intention=settings.intention
         )
         for number in range(1, settings.drivers + 1)
-        for step in steps
+        for step, scenario in zip(steps, scenarios, strict=True)
     ]
     done: list[Mapping[str, float]] = []
 
@@ -158,7 +187,7 @@ def simulated_measures(
         progress(len(done), len(tasks))
 
     rows = run_jobs(_measured, tasks, default_jobs(), tell)
-    names = [step.condition for step in steps]
+    names = [step.label for step in steps]
     table = np.array([[row[m.name] for m in MEASURES] for row in rows])
     shaped = table.reshape(settings.drivers, len(names), len(MEASURES))
     return {

@@ -17,7 +17,8 @@ from typing import NamedTuple
 
 from costeer.base.files import write_text
 from costeer.sessions.attempts import Attempts
-from costeer.sessions.plan import PLAN_FILE, balance
+from costeer.sessions.balance import balance
+from costeer.sessions.plan import PLAN_FILE
 from costeer.sessions.plan_file import paper_plan_text, parsed_plan
 from costeer.sessions.robot import RehearsalSettings, Robot, digest, playwright
 from costeer.sessions.session import Session
@@ -58,7 +59,7 @@ def rehearsal_plan(settings: RehearsalSettings) -> str:
     text = paper_plan_text()
     for name, value in (
         ("participants", settings.participants),
-        ("length", settings.length),
+        ("scenario", f"{settings.scenario}\nlength: {settings.length:g}"),
     ):
         text = re.sub(rf"(?m)^{name}: .*$", f"{name}: {value}", text)
     text = re.sub(r"longest_minutes: [0-9.]+", "longest_minutes: 1", text)

@@ -48,6 +48,7 @@ class RehearsalSettings(NamedTuple):
         haste: Seconds of a drive in a second.
         length: Of a trial [m].
         conditions: Of the block of trials; the plan's if empty.
+        scenario: That ships with costeer.
     """
 
     participants: int = 12
@@ -56,6 +57,7 @@ class RehearsalSettings(NamedTuple):
     haste: float = 20.0
     length: float = 300.0
     conditions: tuple[str, ...] = ()
+    scenario: str = "expressway"
 
 
 def playwright() -> Any:

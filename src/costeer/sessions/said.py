@@ -9,18 +9,12 @@ from typing import Any
 
 from costeer.pages.numerals import listed, number, plural
 from costeer.sessions.answered import Answered
+from costeer.sessions.planned import plan_sentences, versions_driven
 from costeer.sessions.questionnaires.definition import load_definition
 from costeer.sessions.session import Session
 from costeer.sessions.standing import WHOLE
 from costeer.sessions.store import Row
 from costeer.study.people import Drive
-
-_ORDERS = {
-    "williams": "the order of a Williams square (each condition follows each other "
-    "equally often)",
-    "given": "the same order for everybody",
-    "random": "an order drawn for each participant",
-}
 
 
 def sentences(
@@ -41,7 +35,7 @@ def sentences(
     own = [each for each in attempts if each["participant"] in analysed]
     told = [
         _people(answered),
-        _order(session),
+        *plan_sentences(session, versions_driven(session, analysed)),
         _practice(own),
         _instruments(session, answered),
         _devices(own),
@@ -77,14 +71,6 @@ def _people(answered: Sequence[Answered]) -> str:
 def _gender(name: str, number: int) -> str:
     many = {"woman": "women", "man": "men"}.get(name, name)
     return f"{number} {(many if number > 1 else name).replace('_', ' ')}"
-
-
-def _order(session: Session) -> str:
-    block = next((each for each in session.plan.steps if each.kind == "trials"), None)
-    if block is None:
-        return ""
-    number_of = len(block.conditions)
-    return f"The {number_of} conditions of the block came in {_ORDERS[block.order]}."
 
 
 def _practice(attempts: Sequence[Row]) -> str:

@@ -12,16 +12,18 @@ from pathlib import Path
 from typing import Any
 
 from costeer.base.files import read_whole
+from costeer.loop.scenario import TrialSetup
 from costeer.sessions.plan import (
     DONE,
     PLAN_FILE,
     Plan,
     Step,
-    plan_hash,
     session_steps,
+    trial_of,
 )
-from costeer.sessions.plan_file import kept_plan, parsed_plan
+from costeer.sessions.plan_file import parsed_plan
 from costeer.sessions.questionnaires.answers import cleaned
+from costeer.sessions.scenarios import scenario_texts
 from costeer.sessions.standing import (
     ACTIVE,
     DROPPED,
@@ -34,6 +36,7 @@ from costeer.sessions.standing import (
     told_reason,
 )
 from costeer.sessions.store import STORE_FILE, Row, Store, now
+from costeer.sessions.versions import PlanVersions
 
 # Any, in this file: values of answers, facts and measures.
 
@@ -59,11 +62,12 @@ class Session:
             )
         text = read_whole(plan_file)
         self.plan = parsed_plan(text, str(plan_file))
-        self._text = text.decode("utf-8")
+        scenarios = scenario_texts(self.plan, folder)
         self.store = Store(folder / STORE_FILE)
-        self._plans: dict[int, Plan] = {}
+        self.versions = PlanVersions(self.store)
         self._steps: dict[str, tuple[Step, ...]] = {}
-        self.plan_version = self._known_plan()
+        told = text.decode("utf-8")
+        self.plan_version = self.versions.known(self.plan, told, scenarios)
 
     def forget(self, participant: str) -> None:
         """Delete every row of a participant.
@@ -80,34 +84,16 @@ class Session:
 
     # Plans
 
-    def _known_plan(self) -> int:
-        """Version of the plan of the file, kept when it is new."""
-        digest = plan_hash(self.plan)
-        found = self.store.rows("SELECT version FROM plans WHERE hash = ?", digest)
-        if found:
-            return int(found[0]["version"])
-        (last,) = self.store.rows("SELECT coalesce(max(version), 0) AS n FROM plans")
-        version = int(last["n"]) + 1
-        with self.store.transaction():
-            self.store.put(
-                "plans",
-                {
-                    "version": version,
-                    "hash": digest,
-                    "text": self._text,
-                    "utc": now().utc,
-                },
-            )
-            self.store.tell("plan", f"version {version}", data={"hash": digest})
-        return version
-
     def plan_of(self, participant: str) -> Plan:
         """The plan that a participant began with."""
-        version = int(self.person(participant)["plan"])
-        if version not in self._plans:
-            rows = self.store.rows("SELECT text FROM plans WHERE version = ?", version)
-            self._plans[version] = kept_plan(rows[0]["text"], f"plan {version}")
-        return self._plans[version]
+        return self.versions.plan(int(self.person(participant)["plan"]))
+
+    def trial_of(self, participant: str, step: Step) -> TrialSetup:
+        """The trial that a participant drives in a step, as their plan has it."""
+        row = self.person(participant)
+        version = int(row["plan"])
+        scenario = self.versions.scenario(version, step.scenario)
+        return trial_of(self.versions.plan(version), step, int(row["slot"]), scenario)
 
     def steps_of(self, participant: str) -> tuple[Step, ...]:
         """All steps of a participant."""

@@ -11,6 +11,9 @@ from costeer.sessions.store import OF_PEOPLE
 ROOMS = ("records", "practice", "aborted")
 """Folders with files of participants."""
 
+REPORTS = "reports"
+"""Folder with a folder for each series of trials that has a report of its own."""
+
 
 def withdraw(session: Session, participant: str) -> int:
     """Delete all of a participant: rows, files, free pages; a count stays.
@@ -43,9 +46,19 @@ def files_of(session: Session, participant: str) -> list[Path]:
 
 
 def made_of_all(folder: Path) -> list[Path]:
-    """Tables, figures and report in a folder, which hold rows of everybody."""
-    made = [*folder.glob("*.csv"), *(folder / "figures").glob("*.svg")]
-    return [*made, *folder.glob("report.html")]
+    """Tables, figures and reports in a folder, which hold rows of everybody."""
+    return [*_made_in(folder), *made_apart(folder)]
+
+
+def made_apart(folder: Path) -> list[Path]:
+    """Tables, figures and reports of other series of trials."""
+    rooms = sorted((folder / REPORTS).glob("*/"))
+    return [file for room in rooms for file in _made_in(room)]
+
+
+def _made_in(room: Path) -> list[Path]:
+    made = [*room.glob("*.csv"), *(room / "figures").glob("*.svg")]
+    return [*made, *room.glob("report.html")]
 
 
 def num_withdrawn(session: Session) -> int:

@@ -110,6 +110,25 @@ _TRIALS = (
     ),
 )
 
+_SERIES = (
+    Entry(
+        "label",
+        "names the trial among all of the participant; of sessions only",
+        range="text",
+    ),
+    Entry(
+        "scenario",
+        "that was driven on, as the plan names it; of sessions only",
+        range="text",
+    ),
+    Entry(
+        "occasion",
+        "how often the condition was planned on the scenario so far; of sessions only",
+        "-",
+        "1, 2, ...",
+    ),
+)
+
 _LANE_CHANGES = (
     *_WHICH,
     Entry("index", "number in the trial", "-", "1, 2, ..."),
@@ -194,6 +213,7 @@ _DOCUMENTED = {
     "answers_summaries.csv": SummaryRow,
     "answers_dropped.csv": DroppedRow,
     "agreement.csv": AgreementRow,
+    "again.csv": PairRow,
     EXCLUSIONS_FILE: Exclusion,
 }
 
@@ -206,10 +226,18 @@ _FIELD = re.compile(
 def tables() -> dict[str, tuple[Entry, ...]]:
     """Every table of a study by its file, with its columns in their order."""
     return {
-        TRIALS_FILE: _TRIALS,
-        LANE_CHANGES_FILE: _LANE_CHANGES,
-        TRIGGERS_FILE: _TRIGGERS,
-        SCENARIO_FILE: (*_WHICH, *explained(ScenarioRow)),
+        TRIALS_FILE: (
+            *_TRIALS,
+            *_SERIES,
+            Entry(
+                "ended_by",
+                "what ended the drive; of sessions only",
+                range="course, collision; empty if it is not known",
+            ),
+        ),
+        LANE_CHANGES_FILE: (*_LANE_CHANGES, *_SERIES),
+        TRIGGERS_FILE: (*_TRIGGERS, *_SERIES),
+        SCENARIO_FILE: (*_WHICH, *explained(ScenarioRow), *_SERIES),
         **{file: explained(row) for file, row in _DOCUMENTED.items()},
     }
 

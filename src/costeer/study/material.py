@@ -22,6 +22,7 @@ from costeer.records.record import read_record
 from costeer.study.definitions import DEFAULTS, MeasureParameters
 from costeer.study.folder import RECORDS, StudyFolder, read_study
 from costeer.study.measures import parameters_of, prepared
+from costeer.study.occasions import again_pairs
 from costeer.study.outcome import WITHIN, PairRow, StudyTests, SummaryRow
 from costeer.study.people import People, Who, tested_answers
 from costeer.study.quantities import WORKLOAD, Quantity
@@ -53,6 +54,7 @@ class StudyMaterial(NamedTuple):
         beside: Virtual drivers to lay beside them.
         scenario: Rows of `scenario_measures.csv`; None on the paper's scenario.
         road: Parameters of the measures with the lanes that were driven on.
+        again: Trials of conditions that were driven more than once, beside the first.
     """
 
     study: StudyFolder
@@ -67,6 +69,7 @@ class StudyMaterial(NamedTuple):
     beside: StudyMaterial | None = None
     scenario: pd.DataFrame | None = None
     road: MeasureParameters = DEFAULTS
+    again: tuple[PairRow, ...] = ()
 
 
 def read_material(folder: Path, people: People | None = None) -> StudyMaterial:
@@ -80,9 +83,11 @@ def read_material(folder: Path, people: People | None = None) -> StudyMaterial:
         ValueError: If the folder is no study, or a table is missing or unreadable.
     """
     study = read_study(folder) if people is None else people.study
-    trials = _read_table(folder / TRIALS_FILE, people is not None)
-    lane_changes = _read_table(folder / LANE_CHANGES_FILE, people is not None)
-    tests = study_tests(trials, lane_changes, (*MEASURES, *_workload(trials)))
+    all_trials = _read_table(folder / TRIALS_FILE, people is not None)
+    all_changes = _read_table(folder / LANE_CHANGES_FILE, people is not None)
+    trials, lane_changes = _of(people, all_trials), _of(people, all_changes)
+    measures = (*MEASURES, *_workload(trials))
+    tests = study_tests(trials, lane_changes, measures)
     measured = set(zip(trials["participant"], trials["condition"], strict=True))
     found = find_records(folder) if people is None else people.records
     # A record without a row was not believed when the tables were made.
@@ -92,13 +97,16 @@ def read_material(folder: Path, people: People | None = None) -> StudyMaterial:
         study=study,
         trials=trials,
         lane_changes=lane_changes,
-        triggers=_read_measured(folder / TRIGGERS_FILE, measured, people is not None),
+        triggers=_read_measured(folder / TRIGGERS_FILE, measured, people),
         tests=tests,
         records=records,
         metadata=tuple(read_record(path, ()).metadata for path in records.values()),
         people=people,
         answers=None if people is None else tested_answers(people),
-        scenario=_read_measured(folder / SCENARIO_FILE, measured, people is not None),
+        scenario=_read_measured(folder / SCENARIO_FILE, measured, people),
+        again=()
+        if people is None
+        else again_pairs(people, all_trials, all_changes, measures),
         road=DEFAULTS if first is None else parameters_of(read_record(first, ())),
     )
 
@@ -124,13 +132,23 @@ def _workload(trials: pd.DataFrame) -> list[Measure]:
     return [Measure(name) for name in given]
 
 
+def _of(people: People | None, table: pd.DataFrame) -> pd.DataFrame:
+    """The rows of the trials that a report is of; a session's tables hold more."""
+    if people is None or "label" not in table:
+        return table
+    labels = {each.label for each in people.drives}
+    return table[table["label"].isin(labels)].reset_index(drop=True)
+
+
 def _read_measured(
-    file: Path, measured: set[tuple[Who, str]], by_name: bool
+    file: Path, measured: set[tuple[Who, str]], people: People | None
 ) -> pd.DataFrame | None:
     """The rows of the trials that were measured; None if there is no such table."""
     if not file.exists():
         return None
-    table = _read_table(file, by_name)
+    table = _of(people, _read_table(file, people is not None))
+    if table.empty and file.name == SCENARIO_FILE:
+        return None
     keys = zip(table["participant"], table["condition"], strict=True)
     # An empty list would be taken for one of columns.
     return table[np.array([key in measured for key in keys], dtype=bool)]

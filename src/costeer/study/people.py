@@ -16,6 +16,7 @@ from costeer.records.record import read_record
 from costeer.study.answers import answer_tests
 from costeer.study.folder import StudyFolder, configuration_hash
 from costeer.study.measures import (
+    Row,
     lane_change_rows,
     scenario_measure_rows,
     trial_row,
@@ -41,6 +42,9 @@ class Drive(NamedTuple):
         order: Place among the participant's trials, from 1; None if it is not known.
         scores: Of the NASA-TLX after it, by column of `trials.csv`.
         items: Answers to its six items, by name.
+        label: Names it among all trials of the participant; empty without a plan.
+        scenario: That was driven on; empty without a plan.
+        occasion: How often its condition was planned on its scenario so far, from 1.
     """
 
     participant: str
@@ -49,6 +53,23 @@ class Drive(NamedTuple):
     order: int | None = None
     scores: Mapping[str, float] = {}
     items: Mapping[str, float] = {}
+    label: str = ""
+    scenario: str = ""
+    occasion: int = 1
+
+    @property
+    def series(self) -> Series:
+        """What it is compared within."""
+        return self.scenario, self.occasion
+
+    @property
+    def name(self) -> str:
+        """Of the trial, for files."""
+        return self.label or self.condition
+
+
+Series = tuple[str, int]
+"""Scenario and occasion: drives of one series are compared with each other."""
 
 
 class Exclusion(NamedTuple):
@@ -63,6 +84,9 @@ class Exclusion(NamedTuple):
             `unreadable`.
         reason: Why.
         utc: When the attempt began, ISO 8601 in UTC; empty if it is not known.
+        label: Of the trial, as in `trials.csv`; empty without a plan.
+        scenario: Of the trial; empty without a plan.
+        occasion: Of its condition on its scenario, from 1.
     """
 
     participant: str
@@ -72,6 +96,14 @@ class Exclusion(NamedTuple):
     state: str
     reason: str
     utc: str = ""
+    label: str = ""
+    scenario: str = ""
+    occasion: int = 1
+
+    @property
+    def series(self) -> Series:
+        """Of the trial."""
+        return self.scenario, self.occasion
 
 
 class People(NamedTuple):
@@ -83,6 +115,9 @@ class People(NamedTuple):
         exclusions: What does not, and what there is not.
         said: Sentences for the methods, on participants and devices.
         num_withdrawn: Participants who withdrew; nothing else is known of them.
+        again: Trials of the same scenario whose condition was driven before; they are
+            compared with that one alone.
+        apart: Other series, each for a report of its own, by name.
     """
 
     study: StudyFolder
@@ -90,6 +125,16 @@ class People(NamedTuple):
     exclusions: tuple[Exclusion, ...] = ()
     said: tuple[str, ...] = ()
     num_withdrawn: int = 0
+    again: tuple[Drive, ...] = ()
+    apart: Mapping[str, People] = {}
+
+    @property
+    def all_drives(self) -> tuple[Drive, ...]:
+        """Trials of this and all other series."""
+        others = [each for part in self.apart.values() for each in part.drives]
+        found = dict.fromkeys(each.record for each in self.drives)
+        more = [d for d in (*self.again, *others) if d.record not in found]
+        return (*self.drives, *{each.record: each for each in more}.values())
 
     @property
     def records(self) -> dict[tuple[Who, str], Path]:
@@ -113,9 +158,10 @@ def in_order(drives: Iterable[Drive]) -> tuple[Drive, ...]:
     ordered = sorted(
         drives, key=lambda each: (natural(each.participant), place[each.condition])
     )
-    cells: dict[tuple[str, str], Drive] = {}
+    cells: dict[tuple[str, str, Series], Drive] = {}
     for each in ordered:
-        other = cells.setdefault((each.participant, each.condition), each)
+        cell = each.participant, each.condition, each.series
+        other = cells.setdefault(cell, each)
         if other is not each:
             raise ValueError(
                 f"{other.record.name} and {each.record.name} are both of participant "
@@ -149,7 +195,7 @@ def write_people_tables(folder: Path, people: People) -> None:
             f"{people.study.path} has no trial that counts; drive one to its end, or "
             "include one that was excluded"
         )
-    write_trial_tables(folder, [_rows_of(each) for each in people.drives])
+    write_trial_tables(folder, [_rows_of(each) for each in people.all_drives])
     write_exclusions(folder, people.exclusions)
 
 
@@ -164,12 +210,34 @@ def _rows_of(drive: Drive) -> TrialRows:
     about = {"participant": drive.participant, "condition": drive.condition}
     record = found._replace(metadata={**found.metadata, **about})
     scores = {each.name: drive.scores.get(each.name) for each in WORKLOAD}
+    which = {
+        "label": drive.label,
+        "scenario": drive.scenario,
+        "occasion": drive.occasion,
+    }
+    told = which if drive.label else {}
+    ended = {"ended_by": ended_by(record.metadata)} if drive.label else {}
+
+    def labelled(rows: list[Row]) -> list[dict[str, object]]:
+        return [{**row, **told} for row in rows]
+
     return TrialRows(
-        measures={**trial_row(record, drive.order), **scores},
-        lane_changes=lane_change_rows(record),
-        triggers=trigger_rows(record),
-        scenario=scenario_measure_rows(record),
+        measures={**trial_row(record, drive.order), **scores, **told, **ended},
+        lane_changes=labelled(lane_change_rows(record)),
+        triggers=labelled(trigger_rows(record)),
+        scenario=labelled(scenario_measure_rows(record)),
     )
+
+
+def ended_by(metadata: Mapping[str, object]) -> str:
+    """What ended a drive: course, collision or server; empty if it is not told."""
+    markers = metadata.get("markers")
+    ends = [
+        str(each.get("name", ""))
+        for each in (markers if isinstance(markers, list | tuple) else ())
+        if isinstance(each, Mapping) and each.get("kind") == "ended"
+    ]
+    return ends[-1] if ends else ""
 
 
 def tested_answers(people: People) -> StudyTests | None:

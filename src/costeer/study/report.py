@@ -27,6 +27,7 @@ ANSWERS = "answers_"
 """How the names of tables begin that hold tests of the items of the NASA-TLX."""
 
 AGREEMENT_FILE = "agreement.csv"
+AGAIN_FILE = "again.csv"
 FIGURES = "figures"
 REPORT_FILE = "report.html"
 NUM_STEPS = len(FIGURE_NAMES) + 2
@@ -84,6 +85,7 @@ def write_report(
     if material.answers is not None:
         _write_statistics(path, material.answers, ANSWERS)
     _write_agreement(path / AGREEMENT_FILE, material)
+    _write_again(path / AGAIN_FILE, material)
     pictures = _write_figures(path / FIGURES, material, tell)
     tell("report")
     write_text(path / REPORT_FILE, render(material, pictures))
@@ -107,6 +109,14 @@ def _write_agreement(file: Path, material: StudyMaterial) -> None:
         return
     rows = [each._asdict() for each in agreement(material, material.beside)]
     write_csv(file, rows, AgreementRow._fields)
+
+
+def _write_again(file: Path, material: StudyMaterial) -> None:
+    """Write trials beside the first of their condition; remove what is old."""
+    if not material.again:
+        file.unlink(missing_ok=True)
+        return
+    write_csv(file, [each._asdict() for each in material.again], PairRow._fields)
 
 
 def _write_figures(

@@ -9,7 +9,8 @@ from pathlib import Path
 
 import pytest
 
-from costeer.sessions.plan import balance, session_steps
+from costeer.sessions.balance import balance
+from costeer.sessions.plan import session_steps
 from costeer.sessions.plan_file import parsed_plan
 from costeer.sessions.rehearsal_server import RehearsalServer
 from costeer.sessions.rehearse import rehearsal_plan, rehearse

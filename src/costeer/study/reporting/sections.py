@@ -42,6 +42,7 @@ def page_sections(
         _inconsistencies(material, pictures),
         _surroundings(material, pictures),
         _signals(pictures),
+        _again(material),
         _tests(material),
         _trials(material),
         _exclusions(material),
@@ -181,6 +182,18 @@ _NEARNESS = (
 def _signals(pictures: Mapping[str, Picture]) -> Section:
     items = _chosen(pictures, ("signals-strong", "signals-weak"))
     return Section("signals", "Signals of one participant", (), items)
+
+
+def _again(material: StudyMaterial) -> Section | None:
+    """What was driven more than once; nothing where nothing was."""
+    table = statistics_tables.again_table(material)
+    if table is None:
+        return None
+    text = (
+        "All other sections are of the first trial of each condition. Here a later one "
+        "is laid beside it, of those who drove both.",
+    )
+    return Section("again", "Driven again", text, (table,))
 
 
 def _tests(material: StudyMaterial) -> Section:

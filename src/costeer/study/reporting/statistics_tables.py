@@ -98,6 +98,36 @@ def _effect_cells(row: EffectRow | None) -> tuple[str, str, str]:
     )
 
 
+def again_table(material: StudyMaterial) -> Table | None:
+    """Return trials beside the first of their condition; None if there are none."""
+    shown = {each.name: each for each in shown_quantities(material)}
+    rows = []
+    for row in material.again:
+        if row.measure not in shown:
+            continue
+        quantity = shown[row.measure]
+        means = (row.mean_second, row.mean_first)
+        told = [number(m * quantity.factor, quantity.digits) for m in means]
+        title = f"{quantity.title} [{quantity.unit}]"
+        pair = f"{row.first} − {row.second}"
+        rows.append((title, pair, *told, *_pair_cells(row, quantity), str(row.n_first)))
+    if not rows:
+        return None
+    return Table(
+        name="again",
+        title="Conditions that were driven again",
+        note="Later trial minus the first, paired t tests, corrected over the pairs of "
+        "a measure. Neither the order nor what lay between is taken out. Also in "
+        "again.csv.",
+        header=(
+            *("Measure", "Pair", "First", "Later"),
+            *("Difference", "t (df)", "p", "d_z", "n"),
+        ),
+        rows=tuple(rows),
+        num_labels=2,
+    )
+
+
 def pairs_table(material: StudyMaterial, quantity: Quantity) -> Table:
     """Return the comparisons of one measure, as published beside within subjects."""
     pairs = [row for row in material.tests.pairs if row.measure == quantity.name]

@@ -11,7 +11,8 @@ from contextlib import nullcontext
 from datetime import datetime
 from typing import Any
 
-from costeer.sessions.plan import Plan, PlanStep, balance
+from costeer.sessions.balance import balance
+from costeer.sessions.plan import Plan, PlanStep
 from costeer.sessions.plan_file import check_words
 from costeer.sessions.questionnaires.texts import languages
 from costeer.sessions.standing import HOLDING, known_person

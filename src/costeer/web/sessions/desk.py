@@ -17,7 +17,7 @@ from costeer.runtime.setup import DriveSetup, check_drive
 from costeer.runtime.stream import record_paths
 from costeer.sessions.attempts import Attempts
 from costeer.sessions.breaks import break_left
-from costeer.sessions.plan import Step, trial_of
+from costeer.sessions.plan import Step
 from costeer.sessions.questionnaires.answers import checked_answers
 from costeer.sessions.session import Session
 from costeer.sessions.standing import ENDED, OutOfStepError, Standing
@@ -276,7 +276,7 @@ class Desk:
             OSError: If nothing can be written.
         """
         plan, slot = self.session.plan_of(who), int(self.session.person(who)["slot"])
-        trial = trial_of(plan, step, slot)
+        trial = self.session.trial_of(who, step)
         setup = DriveSetup(
             trial=trial,
             wheel=in_hands_of(self.devices.wheel, slot, step.id, trial.speed),

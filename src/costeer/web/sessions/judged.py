@@ -9,11 +9,10 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from costeer.export.markers import markers_of
-from costeer.records.columns import TrialRecord
 from costeer.records.record import read_record, read_stream
 from costeer.sessions.plan import Step
 from costeer.study.measures import trial_row
+from costeer.study.people import ended_by
 
 # Any, in this file: of JSON.
 LOOK_EVERY = 3.0
@@ -40,7 +39,8 @@ def measured(
     except (ValueError, OSError) as error:
         return None, f"the record cannot be measured: {error}"
     plain = {name: _plain(value) for name, value in row.items()}
-    told = "it ended with a collision" if ended_by(found) == "collision" else ""
+    has_hit = ended_by(found.metadata) == "collision"
+    told = "it ended with a collision" if has_hit else ""
     if step.kind != "practise":
         return plain, told
     is_short = float(found.columns["time"][-1]) < 60.0 * step.minutes
@@ -70,12 +70,6 @@ def _plain(value: Any) -> Any:
     return None if isinstance(value, float) and value != value else value
 
 
-def ended_by(record: TrialRecord) -> str:
-    """What ended a drive: course, collision or server; empty if it does not say."""
-    ends = [each.name for each in markers_of(record.metadata) if each.kind == "ended"]
-    return ends[-1] if ends else ""
-
-
 def driven_whole(record: Path, step: Step) -> dict[str, Any] | None:
     """Measures of a record whose drive came to its end; None if it did not.
 
@@ -86,7 +80,7 @@ def driven_whole(record: Path, step: Step) -> dict[str, Any] | None:
         found = read_record(record)
         length = float(found.metadata["configuration"]["road"]["length"])  # type: ignore[index]
         reached = float(found.columns["longitudinal_position"][-1]) >= length - 1.0
-        has_hit = ended_by(found) == "collision"
+        has_hit = ended_by(found.metadata) == "collision"
     except (ValueError, OSError, KeyError, TypeError):
         return None
     enough = float(found.columns["time"][-1]) >= 60.0 * step.minutes
