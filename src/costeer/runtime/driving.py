@@ -13,7 +13,6 @@ from collections.abc import Callable
 from contextlib import suppress
 from typing import Any
 
-from costeer.devices.head.source import STALE_AFTER
 from costeer.devices.wheels.interface import EFFECT_LIFE, WheelLost
 from costeer.devices.wheels.registry import open_wheel
 from costeer.plant.road import adjacent_side, lane_centre
@@ -30,9 +29,9 @@ from costeer.runtime.patience import (
     PAGE_PATIENCE,
     SERVER_PATIENCE,
     STOP_PATIENCE,
-    VERDICT_PATIENCE,
     WHEEL_PATIENCE,
 )
+from costeer.runtime.senses import newest_verdict, sees_head
 from costeer.runtime.setup import (
     DriveSetup,
     drive_columns,
@@ -149,33 +148,20 @@ class Driving:
 
     def _controls(self, now: float) -> Controls:
         """What person, head and network say at this step."""
-        box = self._mailbox
+        box, asked = self._mailbox, self._setup.intention == "network"
+        verdict = newest_verdict(box, self._frames.written) if asked else math.nan
         return Controls(
             steer=box.get("steer"),
             steering=box.get("steering") > 0.5,
             accelerator=box.get("accelerator"),
             brake=box.get("brake"),
             head_yaw=box.get("head_yaw"),
-            head_valid=self._sees_head(now),
-            crossing_probability=self._verdict(),
+            head_valid=sees_head(box, now),
+            crossing_probability=verdict,
             requested=self._requests(),
             leader_uniform=float(self._draws[self._leaders % len(self._draws)]),
             indicator=float(self._indicator.side),
         )
-
-    def _sees_head(self, now: float) -> bool:
-        """Whether the head was seen lately."""
-        age = now - self._mailbox.get("head_time")
-        return self._mailbox.get("head_valid") > 0.5 and age <= STALE_AFTER
-
-    def _verdict(self) -> float:
-        """The network's newest verdict, NaN if it is too old [-]."""
-        if self._setup.intention != "network":
-            return math.nan
-        age = self._frames.written - self._mailbox.get("verdict_row")
-        if age > VERDICT_PATIENCE:
-            return math.nan
-        return self._mailbox.get("crossing_probability")
 
     def _requests(self) -> bool:
         """Whether the indicator asks for a lane change to where there is a lane."""
