@@ -38,6 +38,8 @@ class CommandGroup(LazyGroup):
         "source.",
         "train": "Fit the intention network on records.",
         "emergencies": "Let an obstacle appear ahead, and compare what comes of it.",
+        "compare": "Compare methods of assistance on the same drivers, roads and "
+        "noise.",
         "evaluate": "Judge the intention network on records or a table.",
         "analyse": "Compute driving measures from records or a table.",
         "report": "Write tables, tests, figures and report.html of a study again.",

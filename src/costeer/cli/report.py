@@ -28,19 +28,25 @@ def report(
     The records stay as they are; nothing is simulated. Works for virtual drivers and
     for people, and for a study that is not finished: the folder of costeer study, of
     costeer session, or one with records of drives whose participants are pseudonyms.
+    The folder of costeer compare as well, from its results.
     The tables trials.csv and lane_changes.csv of a study with people that has a
     study.yaml are not touched: they hold answers.
 
     Example:
         costeer report out/study
         costeer report my-study --beside out/study
+        costeer report out/compare
     """
+    from costeer.comparison.folder import COMPARE_FILE
     from costeer.study.again import remake_report, trials_without_record
     from costeer.study.folder import STUDY_FILE
     from costeer.study.report import NUM_STEPS
 
     if beside is not None and not (beside / STUDY_FILE).is_file():
         raise ValueError(f"--beside is {beside}, which has no {STUDY_FILE}")
+    if (folder / COMPARE_FILE).is_file():
+        _remake_comparison(folder, beside)
+        return
     is_study = (folder / STUDY_FILE).is_file()
     people = None if is_study else _people(folder)
     apart = {} if people is None else people.apart
@@ -58,6 +64,25 @@ def report(
         note(f"costeer: {drives} excluded or missing; exclusions.csv says why")
     for each in (page, *others):
         typer.echo(each)
+
+
+def _remake_comparison(folder: Path, beside: Path | None) -> None:
+    """Write tables, figures and page of a comparison again.
+
+    Raises:
+        ValueError: If it cannot be read, or is to stand beside something.
+        OSError: If a file cannot be read or written.
+    """
+    from costeer.comparison.report import NUM_STEPS, remake_report
+
+    if beside is not None:
+        raise ValueError(
+            f"--beside is {beside}, and {folder} is a comparison, which has nothing "
+            "beside it; leave --beside out"
+        )
+    with progress("report", NUM_STEPS) as advance:
+        page = remake_report(folder, lambda _: advance(1))
+    typer.echo(page)
 
 
 def _people(folder: Path) -> People:

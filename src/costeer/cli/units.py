@@ -22,3 +22,22 @@ def parse_speed(text: str | float) -> float:
         raise typer.BadParameter(
             f"{text!r} is not a speed; give metres per second, as 19.4, or 70km/h."
         ) from None
+
+
+def parse_length(text: str | float) -> float:
+    """Return a length [m] from `3000` (m), `3000m` or `3km`.
+
+    Raises:
+        typer.BadParameter: If it is none of these.
+    """
+    if isinstance(text, float):
+        return text
+    word = text.replace(" ", "")
+    try:
+        if word.endswith("km"):
+            return float(word.removesuffix("km")) * 1000.0
+        return float(word.removesuffix("m"))
+    except ValueError:
+        raise typer.BadParameter(
+            f"{text!r} is not a length; give metres, as 3000, or 3km."
+        ) from None

@@ -13,6 +13,7 @@ import numpy as np
 from costeer.scenarios.definition import Zone
 from costeer.study.crossings import within
 from costeer.study.curves import angle_beyond_curve
+from costeer.records.cars import CAR_COLUMN
 from costeer.study.definitions import (
     LEFT_OUT,
     Columns,
@@ -21,7 +22,7 @@ from costeer.study.definitions import (
     missing,
     unknown,
 )
-from costeer.study.manoeuvres import rms, steering_rate
+from costeer.study.effort import wheel_rate_rms
 from costeer.study.neighbours import others
 from costeer.study.scenario import Surroundings
 from costeer.study.segments import LaneChange
@@ -130,7 +131,7 @@ def zone_measures(trial: Trial, around: Surroundings, zone: Zone) -> Measures:
         **lane_keeping_measures(kept),
         "driver_torque_rms": torque_rms(part),
         **course_measures(part),
-        "steering_velocity_rms": _steering_velocity(columns),
+        "steering_velocity_rms": wheel_rate_rms(columns),
         "num_lane_changes": _changes_inside(trial, inside),
         **_around(columns, trial, around),
     }
@@ -165,13 +166,6 @@ def _inside(columns: Columns, zone: Zone) -> Flags:
 # Any: the element type differs from column to column.
 def _cut(columns: Columns, rows: Any) -> dict[str, Any]:
     return {name: values[rows] for name, values in columns.items()}
-
-
-def _steering_velocity(columns: Columns) -> Measure:
-    reason = missing(columns, "steering_wheel_angle")
-    if reason:
-        return unknown("rad/s", reason)
-    return Measure(rms(steering_rate(columns)), "rad/s")
 
 
 def _changes_inside(trial: Trial, inside: Flags) -> Measure:

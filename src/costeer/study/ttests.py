@@ -81,12 +81,15 @@ def independent_t_test(
 def paired_t_test(
     first: Float[NDArray[np.float64], " participant"],
     second: Float[NDArray[np.float64], " participant"],
+    sizes: bool = True,
 ) -> TTest:
     """Student's t test of paired differences.
 
     Args:
         first: Values of the first condition, shape (participants,).
         second: Those of the second, of the same participants in the same order.
+        sizes: Whether effect sizes are wanted: their exact intervals take most of the
+            time.
     """
     means = mean_or_nan(first), mean_or_nan(second)
     if first.size < 2:
@@ -98,6 +101,8 @@ def paired_t_test(
     df = first.size - 1
     error = math.sqrt(float(residuals @ residuals) / df / first.size)
     statistic = float(differences.mean()) / error
+    if not sizes:
+        return _student(means, error, df, statistic, (EffectSize(), EffectSize()))
     size = cohens_d_z(statistic, first.size)
     sd = error * math.sqrt(first.size)
     d_av = cohens_d_av(size, sd / _average_sd(first, second))

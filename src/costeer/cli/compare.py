@@ -1,0 +1,152 @@
+"""`costeer compare`: methods side by side on the same drivers and roads."""
+
+from __future__ import annotations
+
+import time
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from costeer.cli.console import note, progress
+from costeer.cli.units import parse_length
+
+if TYPE_CHECKING:
+    from costeer.comparison.design import ComparisonSettings
+    from costeer.comparison.run import BlockDone, ComparisonOutcome
+
+
+def compare(
+    out: Annotated[
+        Path, typer.Option(help="Folder to write; an unfinished one is resumed.")
+    ],
+    methods: Annotated[
+        str,
+        typer.Option(
+            help="Names with commas between, FILE.py or module:object among them."
+        ),
+    ] = "all",
+    scenarios: Annotated[
+        str,
+        typer.Option(
+            help="Names of costeer scenario list, or FILE.yaml, with commas between.",
+            show_default="six of them",
+        ),
+    ] = "",
+    mistakes: Annotated[
+        str, typer.Option(help="Names with commas between, or all; one at a time.")
+    ] = "none",
+    participants: Annotated[int, typer.Option(help="Number of virtual drivers.")] = 50,
+    seed: Annotated[int, typer.Option(help="Of drivers, traffic and noise.")] = 1,
+    condition: Annotated[
+        str, typer.Option(help="Strength and lane-change duration of the guidance.")
+    ] = "strong-normal",
+    intention: Annotated[
+        str,
+        typer.Option(help="scripted (the driver's plan is known), network or off."),
+    ] = "scripted",
+    length: Annotated[
+        float | None,
+        typer.Option(
+            parser=parse_length,
+            show_default="of each scenario",
+            metavar="LENGTH",
+            help="Of every course [m], or with its unit: 3km.",
+        ),
+    ] = None,
+    jobs: Annotated[
+        int | None,
+        typer.Option(help="Blocks of drivers at a time; as many as processors."),
+    ] = None,
+    keep_records: Annotated[
+        bool, typer.Option("--keep-records", help="Keep the record of every trial.")
+    ] = False,
+) -> None:
+    """Compare methods of assistance on the same drivers, roads and noise.
+
+    Every method meets every driver, scenario and mistake: the differences are paired.
+    Writes a report with winners and ties, effects, trade-offs and worst cases, and a
+    row for each trial. Stop it with Ctrl-C or kill it: the same command goes on.
+
+    Example:
+        costeer compare --out out/compare
+        costeer compare --out out/two --methods manual,ibhs --participants 10
+        costeer compare --out out/mine --methods manual,ibhs,mine.py --length 3km
+    """
+    from costeer.comparison.design import SCENARIOS, ComparisonSettings
+    from costeer.comparison.mistakes import known_mistakes
+
+    settings = ComparisonSettings(
+        methods=() if methods.strip() == "all" else _words(methods, "methods"),
+        scenarios=_words(scenarios, "scenarios") if scenarios else SCENARIOS,
+        mistakes=known_mistakes()
+        if mistakes.strip() == "all"
+        else _words(mistakes, "mistakes"),
+        participants=participants,
+        seed=seed,
+        condition=condition,
+        intention=intention,
+        length=length,
+        keep_records=keep_records,
+    )
+    _print_outcome(*_run(out, settings, jobs))
+
+
+def _words(text: str, option: str) -> tuple[str, ...]:
+    """The names in an option.
+
+    Raises:
+        ValueError: If there is none.
+    """
+    found = tuple(word.strip() for word in text.split(",") if word.strip())
+    if not found:
+        raise ValueError(f"--{option} names nothing; give names with commas between")
+    return found
+
+
+def _run(
+    out: Path, settings: ComparisonSettings, jobs: int | None
+) -> tuple[ComparisonOutcome, float]:
+    """Run the comparison behind a progress display.
+
+    Returns:
+        What was done, and how long it took [s].
+    """
+    from costeer.comparison.design import num_trials
+    from costeer.comparison.run import full_report, prepared, run_comparison
+    from costeer.study.run import StudyInterrupted
+
+    _, plan = prepared(settings)
+    for each in plan.left_out:
+        note(f"costeer: {each.method} with {each.mistake} is left out: {each.reason}")
+    for words in plan.notes:
+        note(f"costeer: {words}")
+    begun = time.monotonic()
+    with progress("trials", num_trials(plan)) as advance:
+
+        def shown(done: BlockDone) -> None:
+            advance(done.num_trials)
+
+        try:
+            outcome = run_comparison(
+                out,
+                settings,
+                jobs=jobs,
+                report=partial(full_report, tell=lambda words: None),
+                progress=shown,
+            )
+        except StudyInterrupted as stop:
+            note(f"costeer: {stop}")
+            raise
+    return outcome, time.monotonic() - begun
+
+
+def _print_outcome(outcome: ComparisonOutcome, seconds: float) -> None:
+    num_new = outcome.num_trials - outcome.num_resumed
+    typer.echo(f"{num_new} trials simulated, {outcome.num_resumed} were there")
+    if num_new and seconds > 0:
+        typer.echo(f"{outcome.driver_seconds:,.0f} driver-seconds in {seconds:.1f} s")
+    if outcome.num_failed:
+        typer.echo(f"{outcome.num_failed} trials failed; trials.csv says why")
+    typer.echo(outcome.folder / "report.html")

@@ -1,0 +1,1 @@
+"""Methods side by side: the same drivers, roads, noise and mistakes."""

@@ -1,0 +1,131 @@
+"""Small drawings of the worst cases: where the car was, and who pushed which way."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from numpy.typing import NDArray
+
+from costeer.comparison.worst import WORST, WorstCase
+from costeer.pages.exhibit import Exhibit, not_drawn
+from costeer.pages.style import (
+    FULL_WIDTH_MM,
+    INK,
+    RULE,
+    SIGNAL_COLOURS,
+    SMALL,
+    Margins,
+    new_figure,
+    panels,
+)
+from costeer.records.record import read_record
+from costeer.study.definitions import MeasureParameters
+from costeer.study.lanes import centre
+from costeer.study.measures import parameters_of
+
+BEFORE, AFTER = 6.0, 4.0
+"""What is drawn around the event [s]."""
+
+_COLUMNS = 3
+_READ = ("time", "lateral_position", "driver_torque", "applied_torque")
+
+
+def worst_drawings(folder: Path, cases: Sequence[WorstCase]) -> Exhibit:
+    """Path and torques around the first event of each of the worst drives.
+
+    Raises:
+        ValueError: If a record cannot be read.
+        OSError: If it is missing.
+    """
+    name, title = "worst-cases", "The worst drive of each method"
+    if not cases:
+        return not_drawn(name, title, "Nobody left a lane or hit anything.")
+    num_rows = -(-len(cases) // _COLUMNS)
+    figure = new_figure(FULL_WIDTH_MM, 10.0 + 46.0 * num_rows)
+    margins = Margins(
+        left=12.0,
+        right=3.0,
+        top=8.0,
+        bottom=9.0,
+        between_columns=13.0,
+        between_rows=9.0,
+    )
+    grid = panels(figure, 2 * num_rows, _COLUMNS, margins, None, (3, 2) * num_rows)
+    for place in range(_COLUMNS * num_rows):
+        row, column = divmod(place, _COLUMNS)
+        upper, lower = grid[2 * row][column], grid[2 * row + 1][column]
+        if place >= len(cases):
+            upper.set_axis_off()
+            lower.set_axis_off()
+            continue
+        _draw(upper, lower, folder / WORST / cases[place].record, cases[place])
+    handles, labels = grid[1][0].get_legend_handles_labels()
+    figure.legend(handles, labels, loc="upper right", ncol=2)
+    caption = (
+        "Upper: lateral position of the car's middle (line) and sides (band), lines of "
+        "the road grey. Lower: torques at the wheel, positive to the left. Time is "
+        "from the first collision or departure of the drive, at the vertical line."
+    )
+    described = (
+        f"Small drawings of {len(cases)} drives: lateral position and torques around "
+        "the first event."
+    )
+    return Exhibit(name, title, caption, described, figure)
+
+
+def _draw(upper: Axes, lower: Axes, path: Path, case: WorstCase) -> None:
+    record = read_record(path, _READ)
+    parameters = parameters_of(record)
+    time = np.asarray(record.columns["time"]) - case.time
+    seen = (time >= -BEFORE) & (time <= AFTER)
+    columns = {name: np.ma.filled(record.columns[name])[seen] for name in _READ}
+    columns["time"] = time[seen]
+    _path(upper, columns, parameters)
+    _torques(lower, columns)
+    upper.set_title(_words(case), fontsize=SMALL)
+    upper.tick_params(labelbottom=False)
+    for axes in (upper, lower):
+        axes.axvline(0.0, color=INK, linewidth=0.6, linestyle=(0.0, (1.0, 1.2)))
+        axes.set_xlim(-BEFORE, AFTER)
+    upper.set_ylabel("y [m]")
+    lower.set_ylabel("Torque\n[N·m]")
+    lower.set_xlabel("Time [s]")
+
+
+def _words(case: WorstCase) -> str:
+    mistake = "" if case.mistake == "none" else f", {case.mistake}"
+    return f"{case.method}\n{case.scenario}{mistake}, driver {case.participant}"
+
+
+# Any: the element type differs from column to column.
+def _path(
+    axes: Axes, columns: dict[str, NDArray[Any]], parameters: MeasureParameters
+) -> None:
+    time, y = columns["time"], columns["lateral_position"]
+    half = parameters.car_width / 2.0
+    for lane in range(int(parameters.num_lanes) + 1):
+        line = centre(parameters, lane) - parameters.lane_width / 2.0
+        edge = lane in (0, int(parameters.num_lanes))
+        axes.axhline(line, color=RULE, linewidth=1.2 if edge else 0.7, zorder=0.5)
+    axes.fill_between(time, y - half, y + half, color=RULE, alpha=0.6, linewidth=0.0)
+    axes.plot(time, y, color=INK, linewidth=0.9)
+    middle = float(np.mean(y)) if y.size else 0.0
+    reach = max(3.2, float(np.ptp(y)) / 2.0 + half + 0.5) if y.size else 3.2
+    axes.set_ylim(middle - reach, middle + reach)
+
+
+def _torques(axes: Axes, columns: dict[str, NDArray[Any]]) -> None:
+    axes.axhline(0.0, color=RULE, linewidth=0.6)
+    for name, label in (("driver_torque", "driver"), ("applied_torque", "guidance")):
+        axes.plot(
+            columns["time"],
+            columns[name],
+            color=SIGNAL_COLOURS[label],
+            linewidth=0.9,
+            linestyle="-" if label == "driver" else (0.0, (4.0, 1.5)),
+            label=label,
+        )

@@ -1,0 +1,338 @@
+"""Figures of a comparison: paired effects against a baseline, trade-offs of aims."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.lines import Line2D
+from numpy.typing import NDArray
+
+from costeer.comparison.criteria import (
+    AIMS,
+    LESS,
+    MORE,
+    SPEAKING,
+    Criterion,
+)
+from costeer.comparison.effects import LEVEL, METHODS, EffectRow
+from costeer.comparison.mistakes import NONE
+from costeer.comparison.results import Results
+from costeer.pages.exhibit import Exhibit, not_drawn
+from costeer.pages.style import (
+    FULL_WIDTH_MM,
+    INK,
+    RULE,
+    SHADE,
+    STRENGTH_COLOURS,
+    Margins,
+    new_figure,
+    panel_letter,
+    panels,
+)
+from costeer.study.quantities import half_width
+
+_OTHERS = (
+    "#D55E00",
+    "#009E73",
+    "#CC79A7",
+    "#E69F00",
+    "#56B4E9",
+    "#8C3B00",
+    "#00456B",
+    "#7A5195",
+)
+_MARKERS = ("s", "^", "D", "v", "P", "X", "<", ">", "p", "h", "*", "d", "8")
+_COLUMNS = 3
+
+
+class Look(NamedTuple):
+    """Colour and marker of a method or a scenario, the same in every figure."""
+
+    colour: str
+    marker: str
+
+
+def looks(methods: Sequence[str]) -> dict[str, Look]:
+    """How each method is drawn: manual driving is grey, the paper's method blue."""
+    known = {
+        "manual": Look(STRENGTH_COLOURS["manual"], "o"),
+        "ibhs": Look(STRENGTH_COLOURS["strong"], "o"),
+    }
+    others = [name for name in methods if name not in known]
+    found = {
+        name: Look(_OTHERS[place % len(_OTHERS)], _MARKERS[place % len(_MARKERS)])
+        for place, name in enumerate(others)
+    }
+    return known | found
+
+
+def effects_against(
+    results: Results, effects: Sequence[EffectRow], baseline: str
+) -> Exhibit:
+    """Forest plots of every other method minus a baseline, one panel a measure."""
+    name, title = f"against-{baseline}", f"Every method against {baseline}"
+    rows = [_turned(row, baseline) for row in effects if _is_of(row, baseline)]
+    shown = [each for each in SPEAKING if any(r.measure == each.name for r in rows)]
+    others = [each for each in results.methods if each != baseline]
+    others = [each for each in others if any(row.first == each for row in rows)]
+    if not rows:
+        return not_drawn(name, title, f"Nothing could be compared with {baseline}.")
+    num_rows = -(-len(shown) // _COLUMNS)
+    height = max(5.0, 1.3 * len(results.scenarios) + 1.6) * len(others)
+    figure = new_figure(FULL_WIDTH_MM, 17.0 + num_rows * (height + 17.0))
+    margins = Margins(
+        left=_label_width(others),
+        right=3.0,
+        top=14.0,
+        bottom=12.0,
+        between_columns=6.0,
+        between_rows=17.0,
+    )
+    grid = panels(figure, num_rows, _COLUMNS, margins)
+    flat = [axes for line in grid for axes in line]
+    for place, (axes, measure) in enumerate(zip(flat, shown, strict=False)):
+        own = [row for row in rows if row.measure == measure.name]
+        _forest(axes, results, measure, own, others)
+        axes.set_yticklabels(others if place % _COLUMNS == 0 else [])
+        panel_letter(axes, "abcdefghi"[place])
+    for axes in flat[len(shown) :]:
+        axes.set_axis_off()
+    figure.legend(
+        handles=_scenario_handles(results.scenarios),
+        loc="upper center",
+        ncol=min(len(results.scenarios), 6),
+    )
+    caption = (
+        f"Paired differences, method minus {baseline}, on the same drivers, noise and "
+        "traffic: means and 95 % intervals over drivers, one mark a scenario. Filled: "
+        f"p < {LEVEL:g} after Benjamini-Hochberg over all comparisons of the measure; "
+        "open: not shown to differ. A method without a value, as a lead time of one "
+        "that starts no lane change, has no mark. The shaded side is the better one."
+    )
+    described = (
+        f"Forest plots with one panel for each of {len(shown)} measures and a row for "
+        f"each method; the numbers stand in effects.csv."
+    )
+    return Exhibit(name, title, caption, described, figure)
+
+
+def _is_of(row: EffectRow, baseline: str) -> bool:
+    named = baseline in (row.first, row.second)
+    return row.kind == METHODS and row.mistake == NONE and named
+
+
+def _turned(row: EffectRow, baseline: str) -> EffectRow:
+    """The same comparison as other minus baseline."""
+    if row.second == baseline:
+        return row
+    return row._replace(
+        first=row.second,
+        second=row.first,
+        difference=-row.difference,
+        low=-row.high,
+        high=-row.low,
+    )
+
+
+def _label_width(names: Sequence[str]) -> float:
+    """White space for the names of methods [mm]."""
+    return 8.0 + 1.25 * max(len(name) for name in names)
+
+
+def _forest(
+    axes: Axes,
+    results: Results,
+    measure: Criterion,
+    rows: Sequence[EffectRow],
+    others: Sequence[str],
+) -> None:
+    step = 0.76 / max(len(results.scenarios), 1)
+    scenario_looks = _scenario_looks(results.scenarios)
+    for row in rows:
+        offset = (
+            results.scenarios.index(row.scenario) - (len(results.scenarios) - 1) / 2
+        )
+        y = others.index(row.first) + step * offset
+        look = scenario_looks[row.scenario]
+        low, mean, high = (
+            measure.factor * value for value in (row.low, row.difference, row.high)
+        )
+        axes.plot([low, high], [y, y], color=look.colour, linewidth=0.9, zorder=2.0)
+        filled = row.p_corrected < LEVEL
+        axes.plot(
+            [mean],
+            [y],
+            marker=look.marker,
+            markersize=3.2,
+            markeredgewidth=0.7,
+            color=look.colour,
+            markerfacecolor=look.colour if filled else "white",
+            zorder=3.0,
+        )
+    axes.set_yticks(range(len(others)))
+    axes.set_ylim(len(others) - 0.5, -0.5)
+    axes.tick_params(axis="y", length=0.0)
+    for place in range(1, len(others)):
+        axes.axhline(place - 0.5, color=RULE, linewidth=0.4, zorder=0.5)
+    axes.margins(x=0.08)
+    axes.autoscale_view(scaley=False)
+    low, high = axes.get_xlim()
+    low, high = min(low, 0.0), max(high, 0.0)
+    axes.axvspan(
+        *((low, 0.0) if measure.better == LESS else (0.0, high)),
+        color=SHADE,
+        linewidth=0.0,
+        zorder=0.0,
+    )
+    axes.axvline(0.0, color=INK, linewidth=0.6, zorder=1.0)
+    axes.set_xlim(low, high)
+    axes.locator_params(axis="x", nbins=4)
+    axes.set_xlabel(f"Δ {measure.label}\n[{measure.unit}]")
+
+
+def _scenario_looks(scenarios: Sequence[str]) -> dict[str, Look]:
+    colours = (INK, *_OTHERS)
+    markers = ("o", *_MARKERS)
+    return {
+        name: Look(colours[place % len(colours)], markers[place % len(markers)])
+        for place, name in enumerate(scenarios)
+    }
+
+
+def _scenario_handles(scenarios: Sequence[str]) -> list[Line2D]:
+    return [
+        Line2D(
+            [], [], color=look.colour, marker=look.marker, markersize=3.5, label=name
+        )
+        for name, look in _scenario_looks(scenarios).items()
+    ]
+
+
+class Point(NamedTuple):
+    """A method in one measure, over scenarios: mean and half of its interval."""
+
+    mean: float
+    half: float
+
+
+def trade_offs(results: Results) -> Exhibit:
+    """A panel for each pair of aims, with a point for each method."""
+    name, title = "trade-offs", "Trade-offs between aims"
+    spoken = {each.aim: each for each in SPEAKING}  # the last one of an aim
+    points = {aim: over_scenarios(results, spoken[aim].name) for aim in AIMS}
+    pairs = [
+        (first, second)
+        for first, second in itertools.combinations(AIMS, 2)
+        if len(points[first].keys() & points[second].keys()) > 1
+    ]
+    if not pairs:
+        return not_drawn(name, title, "Two methods with values of two aims are needed.")
+    num_rows = -(-len(pairs) // _COLUMNS)
+    drawn = [m for m in results.methods if any(m in each for each in points.values())]
+    legend_rows = -(-len(drawn) // 5)
+    top = 7.0 + 4.0 * legend_rows
+    figure = new_figure(FULL_WIDTH_MM, top + 44.0 * num_rows)
+    margins = Margins(
+        left=14.0,
+        right=3.0,
+        top=top,
+        bottom=10.0,
+        between_columns=17.0,
+        between_rows=14.0,
+    )
+    grid = panels(figure, num_rows, _COLUMNS, margins)
+    flat = [axes for line in grid for axes in line]
+    looked = looks(results.methods)
+    for place, (axes, (first, second)) in enumerate(zip(flat, pairs, strict=False)):
+        measures = spoken[first], spoken[second]
+        _scatter(axes, (points[first], points[second]), measures, looked)
+        panel_letter(axes, "abcdefghijklmno"[place])
+    for axes in flat[len(pairs) :]:
+        axes.set_axis_off()
+    handles = [_method_handle(each, looked[each]) for each in drawn]
+    figure.legend(handles=handles, loc="upper center", ncol=5)
+    caption = (
+        "Means over drivers with 95 % intervals, each driver's mean over the scenarios "
+        "in which every method has values. Axes are turned so that the lower left is "
+        "better in both. Safety is the smallest time to the line, performance SDLP, "
+        "effort the driver's torque, comfort lateral jerk, annoyance false "
+        "activations, intention the lead time."
+    )
+    described = f"{len(pairs)} scatter plots of methods, one for each pair of aims."
+    return Exhibit(name, title, caption, described, figure)
+
+
+def over_scenarios(results: Results, measure: str) -> dict[str, Point]:
+    """Mean of each method over drivers of their means over scenarios.
+
+    Only scenarios in which every method that has values at all has some, and drivers
+    with a value in each of them: methods are judged on the same drives.
+    """
+    columns = {
+        method: {
+            scenario: results.column((scenario, NONE, method), measure)
+            for scenario in results.scenarios
+        }
+        for method in results.methods
+    }
+    some = {
+        method: {s for s, column in each.items() if np.isfinite(column).sum() > 1}
+        for method, each in columns.items()
+    }
+    there = [method for method, scenarios in some.items() if scenarios]
+    common = set(results.scenarios).intersection(*(some[method] for method in there))
+    found = {}
+    for method in there if common else ():
+        each = np.array([columns[method][s] for s in results.scenarios if s in common])
+        values: NDArray[np.float64] = each.mean(axis=0)
+        values = values[np.isfinite(values)]
+        if values.size > 1:
+            found[method] = Point(float(values.mean()), half_width(values))
+    return found
+
+
+def _scatter(
+    axes: Axes,
+    points: tuple[dict[str, Point], dict[str, Point]],
+    measures: tuple[Criterion, Criterion],
+    looked: dict[str, Look],
+) -> None:
+    for method in points[0]:
+        if method not in points[1]:
+            continue
+        x, y = points[0][method], points[1][method]
+        look = looked[method]
+        axes.errorbar(
+            x.mean * measures[0].factor,
+            y.mean * measures[1].factor,
+            xerr=x.half * measures[0].factor,
+            yerr=y.half * measures[1].factor,
+            color=look.colour,
+            marker=look.marker,
+            markersize=4.0,
+            elinewidth=0.8,
+        )
+    axes.margins(0.12)
+    axes.set_xlabel(f"{measures[0].label} [{measures[0].unit}]")
+    axes.set_ylabel(f"{measures[1].label} [{measures[1].unit}]")
+    axes.locator_params(nbins=4)
+    if measures[0].better == MORE:
+        axes.invert_xaxis()
+    if measures[1].better == MORE:
+        axes.invert_yaxis()
+
+
+def _method_handle(name: str, look: Look) -> Line2D:
+    return Line2D(
+        [],
+        [],
+        color=look.colour,
+        marker=look.marker,
+        markersize=4.0,
+        linestyle="none",
+        label=name,
+    )

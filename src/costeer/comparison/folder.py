@@ -1,0 +1,187 @@
+"""The folder of a comparison: what it says it is, and the results of each block.
+
+`compare.yaml` binds it to one configuration. The results of a block of drivers are one
+small file that is there whole or not at all; only those of this configuration count.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import re
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import yaml
+
+from costeer.base.files import prepare_folder, read_whole, write_text
+from costeer.base.nested import read_mapping
+from costeer.comparison.configuration import differences
+from costeer.comparison.design import Block, Cell
+from costeer.comparison.measures import COLUMNS, TrialOutcome
+from costeer.study.folder import LOCK_FILE, configuration_hash, locked
+
+COMPARE_FILE = "compare.yaml"
+RESULTS = "results"
+RECORDS = "records"
+FORMAT = 1
+
+_NOT_IN_NAMES = re.compile(r"[^A-Za-z0-9.]+")
+
+
+class ComparisonFolder(NamedTuple):
+    """A folder that belongs to one configuration.
+
+    Attributes:
+        path: The folder.
+        configuration: All that determines the results.
+        hash: Of the configuration.
+    """
+
+    path: Path
+    configuration: dict[str, Any]  # Any: values of YAML
+    hash: str
+
+
+@contextmanager
+def opened_comparison(
+    path: Path, configuration: dict[str, Any], command: str
+) -> Iterator[ComparisonFolder]:
+    """Hold the folder for this configuration, new or begun before.
+
+    Raises:
+        ValueError: If it is another comparison's, holds other things, or another
+            process works in it.
+        OSError: If it cannot be written.
+    """
+    prepare_folder(path, COMPARE_FILE, "comparison", (LOCK_FILE,))
+    with locked(path):
+        folder = ComparisonFolder(
+            path, configuration, configuration_hash(configuration)
+        )
+        if (path / COMPARE_FILE).exists():
+            there = read_comparison(path)
+            if there.hash != folder.hash:
+                told = differences(there.configuration, configuration)
+                raise ValueError(
+                    f"{path} holds another comparison: {told}. Choose another folder, "
+                    "or give the options, files and version of that one to resume it"
+                )
+        else:
+            write_text(path / COMPARE_FILE, _text(folder, command))
+        (path / RESULTS).mkdir(exist_ok=True)
+        for leftover in path.rglob("*.tmp"):
+            leftover.unlink(missing_ok=True)
+        yield folder
+
+
+def _text(folder: ComparisonFolder, command: str) -> str:
+    content = {
+        "format": FORMAT,
+        "configuration_hash": folder.hash,
+        "configuration": folder.configuration,
+    }
+    body = yaml.safe_dump(content, sort_keys=False, allow_unicode=True, width=88)
+    return f"# A comparison. Run it again, or finish it, with\n#   {command}\n{body}"
+
+
+def read_comparison(path: Path) -> ComparisonFolder:
+    """What `compare.yaml` in the folder says.
+
+    Raises:
+        ValueError: If it is missing, unreadable or was edited.
+        OSError: If it cannot be read.
+    """
+    file = path / COMPARE_FILE
+    if not file.is_file():
+        raise ValueError(f"{path} is no comparison: it has no {COMPARE_FILE}")
+    content = read_mapping(file)
+    configuration = content.get("configuration")
+    if content.get("format") != FORMAT or not isinstance(configuration, dict):
+        raise ValueError(f"{file} is not of format {FORMAT}; {_RESTORE}")
+    found = json.loads(json.dumps(configuration))
+    if content.get("configuration_hash") != configuration_hash(found):
+        raise ValueError(f"{file} was edited: its hash does not fit; {_RESTORE}")
+    return ComparisonFolder(path, found, str(content["configuration_hash"]))
+
+
+_RESTORE = "restore it, or choose another folder"
+
+
+def cell_name(cell: Cell) -> str:
+    """Name of a cell in names of files."""
+    parts = (cell.entrant.name, cell.course.name, cell.mistake)
+    words = [_NOT_IN_NAMES.sub("_", part) for part in parts]
+    return f"{cell.number:04d}-{'-'.join(words)}"
+
+
+def block_path(folder: Path, block: Block) -> Path:
+    """Where the results of a block lie."""
+    return (
+        folder / RESULTS / f"{cell_name(block.cell)}-{block.participants[0]:05d}.json"
+    )
+
+
+def record_path(folder: Path, cell: Cell, participant: int) -> Path:
+    """Where the record of a trial lies, if records are kept."""
+    return folder / RECORDS / cell_name(cell) / f"{participant:05d}.parquet"
+
+
+def write_block(
+    folder: ComparisonFolder, block: Block, outcomes: Sequence[TrialOutcome]
+) -> None:
+    """Write the results of a block, whole or not at all.
+
+    Raises:
+        OSError: If they cannot be written.
+    """
+    content = {
+        "comparison": folder.hash,
+        "cell": cell_name(block.cell),
+        "columns": list(COLUMNS),
+        "trials": [
+            each._asdict() | {"values": [_written(value) for value in each.values]}
+            for each in outcomes
+        ],
+    }
+    text = json.dumps(content, allow_nan=False, separators=(",", ":"))
+    write_text(block_path(folder.path, block), text + "\n")
+
+
+def read_block(folder: ComparisonFolder, block: Block) -> list[TrialOutcome] | None:
+    """The results of a block; None if there are none that can be believed.
+
+    Raises:
+        OSError: If its file is there and cannot be read.
+    """
+    try:
+        content = json.loads(read_whole(block_path(folder.path, block)))
+        said = content["comparison"], content["cell"], content["columns"]
+        outcomes = [
+            TrialOutcome(
+                participant=int(each["participant"]),
+                failure=str(each["failure"]),
+                torque_faults=int(each["torque_faults"]),
+                values=tuple(_read(value) for value in each["values"]),
+            )
+            for each in content["trials"]
+        ]
+    except (FileNotFoundError, ValueError, KeyError, TypeError):
+        return None
+    wanted = folder.hash, cell_name(block.cell), list(COLUMNS)
+    who = tuple(each.participant for each in outcomes)
+    whole = all(len(each.values) == len(COLUMNS) for each in outcomes)
+    return outcomes if said == wanted and who == block.participants and whole else None
+
+
+def _written(value: float) -> float | str | None:
+    """A number as JSON has it: NaN is null, the infinite a word."""
+    if math.isnan(value):
+        return None
+    return value if math.isfinite(value) else str(value)
+
+
+def _read(value: float | str | None) -> float:
+    return math.nan if value is None else float(value)
