@@ -174,7 +174,7 @@ def _run(folder: Path, lab: _Lab, where: tuple[str, int], browser: bool) -> None
     """Serve both pages until Ctrl-C."""
     from costeer.sessions.plan_file import check_words
     from costeer.sessions.session import Session
-    from costeer.study.folder import locked
+    from costeer.study.locks import locked
     from costeer.web.security import access_for
     from costeer.web.serving import listening
     from costeer.web.sessions.desk import Desk
@@ -321,7 +321,7 @@ def _withdraw(folder: Path, participant: str | None) -> None:
     """
     from costeer.sessions.session import Session
     from costeer.sessions.withdrawal import withdraw
-    from costeer.study.folder import locked
+    from costeer.study.locks import locked
 
     if not participant:
         raise ValueError("whose data? give --participant P01")
