@@ -66,7 +66,7 @@ page: base
 lock: dev
 	$(COMPILE) requirements/installer.in -o requirements/installer.lock
 	$(COMPILE) $(BASE) --extra jax --extra train --extra drive --extra can --extra lsl \
-		--extra dev -o requirements/dev.lock
+		--extra cluster --extra sensitivity --extra dev -o requirements/dev.lock
 	$(COMPILE) $(BASE) -c requirements/dev.lock -o requirements/base.lock
 	$(COMPILE) $(BASE) -c requirements/dev.lock --extra bench -o requirements/bench.lock
 	$(COMPILE) requirements/page.in -o requirements/page.lock

@@ -41,7 +41,7 @@ from costeer.runtime.frame import PLACE
 from costeer.runtime.recorder import INTERVAL
 from costeer.runtime.shared import close_shared, open_shared
 from costeer.runtime.states import Loss, RunState
-from costeer.study.folder import LOCK_FILE
+from costeer.study.locks import LOCK_FILE
 from tests.runtime.rig import wheel_setup
 from tests.runtime.test_processes import is_running
 from tests.study.fakes import contents

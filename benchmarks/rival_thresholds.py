@@ -32,7 +32,7 @@ from costeer.loop.parameters import DT
 from costeer.loop.scenario import PILOT_SEED, TrialSetup
 from costeer.loop.trial import simulate_trial
 from costeer.methods.inclusion import IntentParameters
-from costeer.study.jobs import default_jobs, run_jobs
+from costeer.scale.jobs import default_jobs, run_jobs
 from costeer.training.operating import best_place, counts_at, operating_counts
 from costeer.training.recordings import recordings_of
 from costeer.training.triggers import TriggerParameters

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from costeer.loop.parameters import DT
 from costeer.loop.scenario import TrialSetup, loop_parameters, trial_driver
 from costeer.loop.trial import simulate_trial
-from costeer.study.jobs import default_jobs, run_jobs
+from costeer.scale.jobs import default_jobs, run_jobs
 from costeer.validation.pilot import FACTOR, PERCENTILE, opposed_gaps, pilot_setups
 
 NUM_DRIVERS = 30

@@ -8,7 +8,7 @@ import re
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
-from costeer.study.jobs import default_jobs
+from costeer.scale.jobs import default_jobs
 
 _PACKAGES = ("costeer", "numpy", "numba", "jax")
 _LINUX_PROCESSOR = Path("/proc/cpuinfo")

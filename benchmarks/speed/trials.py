@@ -22,7 +22,7 @@ from costeer.loop.trial import (
     trial_duration,
 )
 from costeer.methods.ibhs import IBHS
-from costeer.study.jobs import default_jobs
+from costeer.scale.jobs import default_jobs
 
 STRONG = TrialSetup(condition="strong-normal", intention="scripted")
 UNIT = "driver-s/s"

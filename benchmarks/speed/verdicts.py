@@ -33,7 +33,7 @@ from costeer.intention.features import (
 from costeer.intention.gru import NetworkWeights, hidden_size
 from costeer.intention.wavefront import advance, initial_state, wavefront_weights
 from costeer.intention.weights import intention_network
-from costeer.study.jobs import default_jobs
+from costeer.scale.jobs import default_jobs
 
 SIZES = (8, 16, 24, 32, 48, 64)
 

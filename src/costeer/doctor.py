@@ -24,7 +24,7 @@ import numpy as np
 
 from costeer.base.extras import LIBRARIES, install_command, pip_command
 from costeer.devices.wheels.interface import WheelDescription
-from costeer.study.jobs import usable_cores
+from costeer.scale.jobs import usable_cores
 
 OLDEST_PYTHON = (3, 11)
 STUDY_MEMORY = 2.0e9

@@ -18,6 +18,7 @@ MOVED = {
     "costeer.runtime.head": "costeer.devices.head",
     "costeer.runtime.wheels": "costeer.devices.wheels",
     "costeer.study.conditions": "costeer.methods.conditions",
+    "costeer.study.jobs": "costeer.scale.jobs",
 }
 """Where a module, or a whole room with all that is in it, was and is."""
 

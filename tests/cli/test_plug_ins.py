@@ -101,7 +101,7 @@ def files(tmp_path_factory: pytest.TempPathFactory) -> Path:
         ("--predictor sure.py", "predictor PREDICTOR says 2"),
         ("--predictor raising.py", "predictor PREDICTOR broke: IndexError"),
         ("--predictor number.py", "5 is no predictor; give a function"),
-        ("--predictor grru", "predictor 'grru' is not known; did you mean gru"),
+        ("--predictor grru", "predictor 'grru' is not known (did you mean gru?)"),
         ("--weights damaged.npz", "damaged.npz"),
         ("--weights other.npz", "other.npz"),
         ("--weights missing.npz", "missing.npz: No such file"),

@@ -10,7 +10,7 @@ import pytest
 from costeer.cli import main
 from costeer.records.record import read_record, write_record
 from costeer.study.configuration import StudySettings
-from costeer.study.folder import locked
+from costeer.study.locks import locked
 from costeer.study.material import find_records
 from costeer.study.run import run_study
 from tests.study.fakes import contents, made_up

@@ -11,6 +11,7 @@ import pytest
 from costeer.cli import main
 from costeer.cli.trial_progress import speedometer, study_progress
 from costeer.study import run
+from costeer.study.design import Trial
 from costeer.study.trial_tables import TrialRows
 from costeer.study.trials import TrialDone
 from tests.study.fakes import contents, made_up, plain_report
@@ -27,7 +28,7 @@ def _fake(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def done(seconds: float, resumed: bool = False) -> TrialDone:
-    return TrialDone(TrialRows({}, []), seconds, resumed)
+    return TrialDone(Trial(1, "manual", 1), TrialRows({}, []), seconds, resumed)
 
 
 @pytest.mark.usefixtures("_fake")

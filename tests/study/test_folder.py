@@ -12,20 +12,19 @@ import yaml
 
 from costeer.base.files import write_text
 from costeer.study.folder import (
-    LOCK_FILE,
     STUDY_FILE,
     configuration_hash,
-    locked,
     opened_study,
     read_study,
     record_path,
 )
+from costeer.study.locks import LOCK_FILE, locked
 
 CONFIGURATION: dict[str, object] = {"seed": 1, "speed": 70 / 3.6, "order": [["manual"]]}
 HOLD = """
 import sys, time
 from pathlib import Path
-from costeer.study.folder import locked
+from costeer.study.locks import locked
 with locked(Path(sys.argv[1])):
     print("held", flush=True)
     time.sleep(60)

@@ -59,7 +59,7 @@ def measures(
     for name in thresholds:
         if name not in known:
             raise ValueError(
-                f"there is no threshold '{name}'{nearest(name, known) or ';'} choose "
+                f"there is no threshold '{name}'{nearest(name, known)}; choose "
                 f"from {', '.join(known)}"
             )
     chosen = MeasureParameters(lane_width=lane_width, **thresholds)

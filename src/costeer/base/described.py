@@ -127,7 +127,7 @@ def nearest(name: str, known: Iterable[str]) -> str:
     last = name.rpartition(".")[2]
     same = [each for each in known if each.rpartition(".")[2] == last]
     near = same or difflib.get_close_matches(name, known, n=3, cutoff=0.5)
-    return f"; did you mean {' or '.join(near)}?" if near else ""
+    return f" (did you mean {' or '.join(near)}?)" if near else ""
 
 
 def with_values(record: Record, values: Mapping[str, Real]) -> Record:

@@ -75,12 +75,12 @@ def compare(
         costeer compare --out out/mine --methods manual,ibhs,mine.py --length 3km
     """
     from costeer.comparison.design import SCENARIOS, ComparisonSettings
-    from costeer.comparison.mistakes import known_mistakes
+    from costeer.scenarios.mistakes import MISTAKES
 
     settings = ComparisonSettings(
         methods=() if methods.strip() == "all" else _words(methods, "methods"),
         scenarios=_words(scenarios, "scenarios") if scenarios else SCENARIOS,
-        mistakes=known_mistakes()
+        mistakes=tuple(MISTAKES)
         if mistakes.strip() == "all"
         else _words(mistakes, "mistakes"),
         participants=participants,

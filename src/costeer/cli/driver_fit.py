@@ -45,7 +45,7 @@ def show_fit(
     """
     from costeer.identification.fit import fit_driver
     from costeer.identification.recording import doubts_of
-    from costeer.study.jobs import default_jobs
+    from costeer.scale.jobs import default_jobs
     from costeer.validation.fitted import REPEATS, check_fit
 
     refuse_bad_plot(plot)

@@ -125,7 +125,7 @@ def show_validation(asked: Asked, out: Path | None, data: Path | None) -> None:
 
 
 def _driven(asked: Asked) -> ManualDriving:
-    from costeer.study.jobs import default_jobs
+    from costeer.scale.jobs import default_jobs
     from costeer.validation.manual import drive_population
 
     with progress("manual trials", asked.number) as advance:
@@ -136,7 +136,7 @@ def _driven(asked: Asked) -> ManualDriving:
 
 def _reported(asked: Asked, out: Path, data: Path | None) -> ManualDriving:
     """Simulate all that the report stands on, and write it."""
-    from costeer.study.jobs import default_jobs
+    from costeer.scale.jobs import default_jobs
     from costeer.validation.people.folder import data_folder
     from costeer.validation.reporting.evidence import Plan, gather
     from costeer.validation.reporting.report import prepare, write_validation
@@ -229,7 +229,7 @@ def show_threshold(asked: Asked) -> None:
     """Compute the inconsistency threshold from pilot drivers who agree."""
     from costeer.controller.consistency import ConsistencyParameters
     from costeer.loop.scenario import PILOT_SEED
-    from costeer.study.jobs import default_jobs
+    from costeer.scale.jobs import default_jobs
     from costeer.validation.pilot import pilot_setups, pilot_threshold
 
     count = asked.number

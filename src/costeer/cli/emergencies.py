@@ -40,7 +40,7 @@ def emergencies(
     from costeer.emergencies.report import write_report
     from costeer.emergencies.run import drive_all, num_drives, prepare
     from costeer.methods.conditions import check_conditions
-    from costeer.study.jobs import JobsStoppedError, default_jobs
+    from costeer.scale.jobs import JobsStoppedError, default_jobs
 
     named = tuple(name.strip() for name in conditions.split(",") if name.strip())
     settings = Settings(drivers, seed, check_conditions(named), method)

@@ -194,7 +194,7 @@ def _run(folder: Path, lab: _Lab, where: tuple[str, int], browser: bool) -> None
     from costeer.sessions.plan_file import check_words
     from costeer.sessions.scenarios import scenario_notes
     from costeer.sessions.session import Session
-    from costeer.study.folder import locked
+    from costeer.study.locks import locked
     from costeer.web.security import access_for
     from costeer.web.serving import listening
     from costeer.web.sessions.desk import Desk
@@ -345,7 +345,7 @@ def _withdraw(folder: Path, participant: str | None) -> None:
     """
     from costeer.sessions.session import Session
     from costeer.sessions.withdrawal import withdraw
-    from costeer.study.folder import locked
+    from costeer.study.locks import locked
 
     if not participant:
         raise ValueError("whose data? give --participant P01")

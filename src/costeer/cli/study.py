@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import time
 from functools import partial
 from pathlib import Path
@@ -11,11 +12,13 @@ import typer
 
 from costeer.cli import plug_ins
 from costeer.cli.console import note
+from costeer.cli.scaled import Cluster, end_if_failed
 from costeer.cli.trial_progress import study_progress
 
 if TYPE_CHECKING:
+    from costeer.scale.shard import Shard
     from costeer.study.configuration import StudySettings
-    from costeer.study.run import StudyOutcome
+    from costeer.study.run import Scale, StudyOutcome
 
 
 def study(
@@ -50,21 +53,38 @@ def study(
     report: Annotated[
         bool, typer.Option(help="Tests, figures and report.html after the tables.")
     ] = True,
+    cluster: Cluster = "",
+    records: Annotated[
+        bool, typer.Option(help="Keep trial records, or their measures alone.")
+    ] = True,
+    shard: Annotated[
+        str,
+        typer.Option(
+            metavar="I/N",
+            help="Part of the trials, as 3/20; slurm in a job array. Then costeer "
+            "merge.",
+        ),
+    ] = "",
 ) -> None:
     """Run the whole experiment with virtual drivers, then the report.
 
     Each participant drives manually, then with guidance of each strength and
     duration. Stop it with Ctrl-C or kill it: the same command goes on where it
-    stopped, and the results are the same. The results do not depend on --jobs.
+    stopped, and the results are the same. They do not depend on --jobs, --cluster or
+    --shard. A trial that fails is a row of failures.csv; the exit code is then 1.
 
     Example:
         costeer study --out out/study
         costeer study --out out/quick --participants 2 --length 2000 --no-report
         costeer study --out out/firm --set guidance.lateral_error_gain=3
         costeer study --out out/curves --scenario expressway-curves
+        costeer study --out out/many --participants 1000 --no-records --cluster local:4
     """
     from costeer.methods.conditions import parse_conditions
+    from costeer.scale.cluster import check_cluster
+    from costeer.scale.shard import WHOLE, parse_shard
     from costeer.study.configuration import StudySettings, check_settings
+    from costeer.study.run import Scale
 
     course = plug_ins.chosen_scenario(scenario, length, speed)
     settings = check_settings(
@@ -86,7 +106,14 @@ def study(
         )
     )
     _warn_if_unbalanced(settings)
-    _print_outcome(*_run(out, settings, jobs, report), report=report)
+    scale = Scale(
+        cluster=check_cluster(cluster),
+        records=records,
+        shard=parse_shard(shard, os.environ) if shard else WHOLE,
+    )
+    outcome, seconds = _run(out, settings, jobs, report, scale)
+    _print_outcome(outcome, seconds)
+    _print_end(outcome, scale.shard, report)
 
 
 def _warn_if_unbalanced(settings: StudySettings) -> None:
@@ -101,18 +128,20 @@ def _warn_if_unbalanced(settings: StudySettings) -> None:
 
 
 def _run(
-    out: Path, settings: StudySettings, jobs: int | None, report: bool
+    out: Path, settings: StudySettings, jobs: int | None, report: bool, scale: Scale
 ) -> tuple[StudyOutcome, float]:
     """Run the study behind a progress display; say how to resume if it is stopped.
 
     Returns:
         What was done, and how long the trials took [s].
     """
+    from costeer.scale.shard import part
     from costeer.study.run import StudyInterrupted, full_report, run_study
     from costeer.study.trials import TrialDone, study_trials
 
     begun = ended = time.monotonic()
-    with study_progress(len(study_trials(settings))) as display:
+    total = len(part(study_trials(settings), scale.shard))
+    with study_progress(total) as display:
 
         def shown(done: TrialDone) -> None:
             nonlocal ended
@@ -126,6 +155,7 @@ def _run(
                 jobs=jobs,
                 report=partial(full_report, tell=display.step) if report else None,
                 progress=shown,
+                scale=scale,
             )
         except StudyInterrupted as stop:
             note(f"costeer: {stop}")
@@ -133,12 +163,23 @@ def _run(
     return outcome, ended - begun
 
 
-def _print_outcome(outcome: StudyOutcome, seconds: float, report: bool) -> None:
-    num_new = outcome.num_trials - outcome.num_resumed
+def _print_outcome(outcome: StudyOutcome, seconds: float) -> None:
+    num_failed = len(outcome.failed)
+    num_new = outcome.num_trials - outcome.num_resumed - num_failed
     typer.echo(f"{num_new} trials simulated, {outcome.num_resumed} were there")
     if num_new and seconds > 0:
         typer.echo(
             f"{outcome.driver_seconds:,.0f} driver-seconds in {seconds:.1f} s, "
             f"{outcome.driver_seconds / seconds:,.0f} per second"
         )
-    typer.echo(outcome.folder / ("report.html" if report else "trials.csv"))
+
+
+def _print_end(outcome: StudyOutcome, shard: Shard, report: bool) -> None:
+    if shard.total == 1:
+        typer.echo(outcome.folder / ("report.html" if report else "trials.csv"))
+    else:
+        note(
+            f"costeer: shard {shard.number}/{shard.total} is done; when all are: "
+            f"costeer merge {outcome.folder}"
+        )
+    end_if_failed(outcome)

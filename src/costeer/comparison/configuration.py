@@ -8,19 +8,14 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
-from costeer.comparison.design import (
-    ComparisonSettings,
-    Course,
-    Entrant,
-    Plan,
-    setup_of,
-)
+from costeer.base.entry import simulation_source
+from costeer.comparison.design import ComparisonSettings, Plan, setup_of
+from costeer.comparison.entrants import Course, Entrant
 from costeer.loop.trial import trial_predictor
 from costeer.methods.interface import method_sources
 from costeer.methods.registry import method_named
 from costeer.scenarios.reading import scenario_named, shipped
 from costeer.scenarios.writing import plain
-from costeer.study.configuration import simulation_source
 
 
 def comparison_configuration(

@@ -6,14 +6,13 @@ another with the same driver, road and mistake are a pair.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import NamedTuple
 
+from costeer.comparison.entrants import Course, Entrant
 from costeer.comparison.mistakes import (
     NONE,
-    TRIGGER,
     check_mistakes,
-    concern_of,
     contradiction,
     with_mistake,
 )
@@ -68,23 +67,6 @@ class ComparisonSettings(NamedTuple):
     intention: str = "scripted"
     length: float | None = None
     keep_records: bool = False
-
-
-class Entrant(NamedTuple):
-    """A method in the comparison: its name, how it was given, whether it assists."""
-
-    name: str
-    given: str | AnyMethod
-    assists: bool
-
-
-class Course(NamedTuple):
-    """A scenario in the comparison: name, how it was given, length [m], speed [m/s]."""
-
-    name: str
-    given: str | Scenario
-    length: float
-    speed: float
 
 
 class Cell(NamedTuple):
@@ -165,15 +147,11 @@ def checked(settings: ComparisonSettings) -> ComparisonSettings:
     )
 
 
-def planned(
-    settings: ComparisonSettings, starts_changes: Callable[[Entrant], bool]
-) -> Plan:
+def planned(settings: ComparisonSettings) -> Plan:
     """All trials, each of which can be driven.
 
     Args:
         settings: Checked.
-        starts_changes: Whether a method starts lane changes; asked only where a
-            mistake concerns the trigger.
 
     Raises:
         ValueError: If a method, a scenario or a trial cannot be.
@@ -189,7 +167,7 @@ def planned(
     )
     _refuse_twins("method", [each.name for each in entrants])
     _refuse_twins("scenario", [each.name for each in courses])
-    left_out = _left_out(settings, entrants, starts_changes)
+    left_out = _left_out(settings, entrants, courses)
     cells = cells_of(entrants, courses, settings.mistakes, left_out)
     for cell in cells:
         loop_parameters(setup_of(settings, cell, 1))
@@ -238,19 +216,14 @@ def _refuse_twins(what: str, names: list[str]) -> None:
 def _left_out(
     settings: ComparisonSettings,
     entrants: tuple[Entrant, ...],
-    starts_changes: Callable[[Entrant], bool],
+    courses: tuple[Course, ...],
 ) -> tuple[LeftOut, ...]:
-    concerned = any(
-        concern_of(each) == TRIGGER for each in settings.mistakes if each != NONE
+    return tuple(
+        LeftOut(entrant.name, mistake, reason)
+        for entrant in entrants
+        for mistake in settings.mistakes
+        if (reason := contradiction(mistake, entrant, courses, settings.intention))
     )
-    found = []
-    for entrant in entrants:
-        starts = entrant.assists and concerned and starts_changes(entrant)
-        for mistake in settings.mistakes:
-            reason = contradiction(mistake, entrant.assists, starts)
-            if reason:
-                found.append(LeftOut(entrant.name, mistake, reason))
-    return tuple(found)
 
 
 def cells_of(

@@ -21,7 +21,8 @@ from costeer.base.nested import read_mapping
 from costeer.comparison.configuration import differences
 from costeer.comparison.design import Block, Cell
 from costeer.comparison.measures import COLUMNS, TrialOutcome
-from costeer.study.folder import LOCK_FILE, configuration_hash, locked
+from costeer.study.folder import configuration_hash
+from costeer.study.locks import LOCK_FILE, locked
 
 COMPARE_FILE = "compare.yaml"
 RESULTS = "results"

@@ -1,94 +1,70 @@
-"""Mistakes that a comparison injects: their names, what they concern, who can have one.
-
-The one place in which a mistake is handed to a trial is `with_mistake`.
-"""
+"""Mistakes in a comparison: one at a time, beside none; who cannot make which."""
 
 from __future__ import annotations
 
-from importlib import import_module
-from importlib.util import find_spec
-from typing import Any
-
-from costeer.base.described import nearest
+from costeer.comparison.entrants import Course, Entrant
 from costeer.loop.scenario import TrialSetup
+from costeer.methods.checked import hears_triggers
+from costeer.methods.registry import method_named
+from costeer.scenarios.mistakes import (
+    CAR,
+    DRIVER,
+    MISTAKES,
+    TRIGGER,
+    parsed_mistakes,
+)
+from costeer.scenarios.reading import scenario_named
 
 NONE = "none"
 """Everything works."""
 
-MOTOR, TRIGGER, WORLD = "motor", "trigger", "world"
-"""What a mistake concerns: the torque of an assistance and what it rests on; the start
-of lane changes; what is there without assistance too: driver, car, road."""
 
-_HOME = "costeer.scenarios.mistakes"
+def check_mistakes(words: tuple[str, ...]) -> tuple[str, ...]:
+    """The mistakes, `none` first: it is what all others are compared with.
 
-_WORDS = (
-    (TRIGGER, ("trigger", "missed", "late", "early", "side", "give", "gave")),
-    (WORLD, ("sight", "friction", "evasive", "driver")),
-)
-"""Words in the name of a mistake that tell what it concerns; else it is the motor."""
-
-
-def known_mistakes() -> tuple[str, ...]:
-    """Names of the mistakes that can be injected, `none` first."""
-    return (NONE, *_presets())
-
-
-def _presets() -> dict[str, Any]:  # Any: a mistake is defined with the scenarios
-    if find_spec(_HOME) is None:
-        return {}
-    return dict(import_module(_HOME).MISTAKES)
-
-
-def check_mistakes(names: tuple[str, ...]) -> tuple[str, ...]:
-    """The names, `none` first: it is what all others are compared with.
+    Args:
+        words: As `late-trigger` or `late-trigger=0.8`.
 
     Raises:
-        ValueError: If one is not known or given twice.
+        ValueError: If one is not known, out of range or given twice.
     """
-    known = known_mistakes()
-    for name in names:
-        if name not in known:
-            raise ValueError(
-                f"mistake '{name}' is not known{nearest(name, known)}; choose from "
-                f"{', '.join(known)}"
-            )
-        if names.count(name) > 1:
-            raise ValueError(f"mistake {name} is given twice; name each once")
-    return (NONE, *(name for name in names if name != NONE))
+    others = tuple(word for word in words if word != NONE)
+    for word in others:
+        parsed_mistakes([word])
+        if others.count(word) > 1:
+            raise ValueError(f"mistake {word} is given twice; name each once")
+    return (NONE, *others)
 
 
-def concern_of(mistake: str) -> str:
-    """What a mistake concerns: as its preset says, else by its name."""
-    told = getattr(_presets().get(mistake), "concerns", "")
-    if told in (MOTOR, TRIGGER, WORLD):
-        return str(told)
-    for part, words in _WORDS:
-        if any(word in mistake.split("-") for word in words):
-            return part
-    return MOTOR
-
-
-def contradiction(mistake: str, assists: bool, starts_changes: bool) -> str:
+def contradiction(
+    mistake: str, entrant: Entrant, courses: tuple[Course, ...], intention: str
+) -> str:
     """Why a method cannot have a mistake; empty if it can.
 
     Args:
-        mistake: Its name.
-        assists: Whether the method gives a torque.
-        starts_changes: Whether it starts lane changes.
+        mistake: As it was given.
+        entrant: The method.
+        courses: The roads.
+        intention: Where triggers come from: "network", "scripted" or "off".
     """
-    if mistake == NONE or concern_of(mistake) == WORLD:
+    if mistake == NONE:
         return ""
-    if not assists:
+    (told,) = parsed_mistakes([mistake])
+    whose = MISTAKES[told.kind].whose
+    if whose in (CAR, DRIVER):
+        return ""
+    if not entrant.assists:
         return "the method gives no torque, so nothing of it can go wrong"
-    if concern_of(mistake) == TRIGGER and not starts_changes:
-        return "the method starts no lane change, so its trigger cannot go wrong"
+    if whose == TRIGGER and not hears_triggers(method_named(entrant.given)):
+        return "the method hears no trigger and no indicator that could go wrong"
+    lanes = [scenario_named(each.given).road.lanes for each in courses]
+    if told.kind == "wrong-side" and max(lanes) < 3:
+        return "none of the roads has a lane on the wrong side"
+    if told.kind == "head-lost" and intention != "network":
+        return "nothing looks at the head; choose intention network"
     return ""
 
 
 def with_mistake(setup: TrialSetup, mistake: str) -> TrialSetup:
     """The trial with a mistake in it."""
-    if mistake == NONE:
-        return setup
-    # Any: a field that trials have as soon as there are mistakes.
-    given: dict[str, Any] = {"mistakes": (mistake,)}
-    return setup._replace(**given)
+    return setup if mistake == NONE else setup._replace(mistakes=(mistake,))

@@ -52,7 +52,7 @@ from costeer.methods.conditions import MANUAL
 from costeer.pages.frame import Picture, Section, picture, render_page, write_figures
 from costeer.pages.style import styled
 from costeer.pages.tables import versions_table
-from costeer.study.folder import locked
+from costeer.study.locks import locked
 from costeer.study.run import ignore
 from costeer.study.trial_tables import write_csv
 

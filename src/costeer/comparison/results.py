@@ -16,12 +16,11 @@ from costeer.base.files import replacing
 from costeer.comparison.design import (
     Block,
     Cell,
-    Course,
-    Entrant,
     LeftOut,
     blocks_of,
     cells_of,
 )
+from costeer.comparison.entrants import Course, Entrant
 from costeer.comparison.folder import ComparisonFolder, read_block
 from costeer.comparison.measures import COLUMNS, TrialOutcome
 from costeer.study.trial_tables import cell as text_of

@@ -19,7 +19,6 @@ from costeer.comparison.configuration import comparison_configuration
 from costeer.comparison.design import (
     Block,
     ComparisonSettings,
-    Entrant,
     Plan,
     checked,
     num_trials,
@@ -35,21 +34,16 @@ from costeer.comparison.folder import (
 )
 from costeer.comparison.measures import COLUMNS, TrialOutcome, failed, outcome_of
 from costeer.comparison.worst import write_worst
-from costeer.loop.scenario import PILOT_SEED, TrialSetup
 from costeer.loop.trial import simulate_trial
 from costeer.methods.registry import METHODS
-from costeer.records.columns import LANE_CHANGING
 from costeer.records.record import write_record
+from costeer.scale.jobs import MOST_JOBS, JobsStoppedError, default_jobs, run_jobs
 from costeer.study.configuration import check_count
-from costeer.study.jobs import MOST_JOBS, JobsStoppedError, default_jobs, run_jobs
 from costeer.study.run import StudyInterrupted, ignore
 from costeer.study.trials import LENGTH_OF_TRY, Simulate
 
 USUAL = ComparisonSettings()
 """All methods, six scenarios, 50 drivers."""
-
-_PROBE = 1800.0
-"""Of the drive that tells whether a method starts lane changes: one overtaking [m]."""
 
 
 class BlockDone(NamedTuple):
@@ -111,7 +105,7 @@ def prepared(
         OSError: If a file cannot be read.
     """
     full = checked(settings)
-    plan = planned(full, partial(_starts_changes, full, simulate))
+    plan = planned(full)
     tried = set()
     for cell in plan.cells:
         ours = isinstance(cell.entrant.given, str) and cell.entrant.given in METHODS
@@ -120,20 +114,6 @@ def prepared(
         tried.add(cell.entrant.name)
         simulate(setup_of(full, cell, 1)._replace(length=LENGTH_OF_TRY))
     return full, plan
-
-
-def _starts_changes(
-    settings: ComparisonSettings, simulate: Simulate, entrant: Entrant
-) -> bool:
-    """Whether a method follows a path to the other lane when a driver overtakes."""
-    setup = TrialSetup(
-        seed=PILOT_SEED,
-        condition=settings.condition,
-        method=entrant.given,
-        length=_PROBE,
-        intention="scripted",
-    )
-    return bool(np.any(simulate(setup).columns["mode"] == LANE_CHANGING))
 
 
 def run_comparison(

@@ -18,7 +18,7 @@ from costeer.loop.scenario import loop_parameters
 from costeer.loop.trial import simulate_trial
 from costeer.records.columns import TrialRecord
 from costeer.records.record import write_record
-from costeer.study.jobs import run_jobs
+from costeer.scale.jobs import run_jobs
 from costeer.study.trial_tables import write_csv
 
 ROWS_FILE = "emergencies.csv"

@@ -149,7 +149,7 @@ def _full_name(name: str, known: set[str]) -> str:
     if full not in known:
         names = [_short(each, known) for each in sorted(known) if not is_option(each)]
         raise ValueError(
-            f"there is no parameter '{name}'{nearest(name, names) or ';'} "
+            f"there is no parameter '{name}'{nearest(name, names)}; "
             "`costeer parameters` lists all, and with --method those of another method"
         )
     return full

@@ -12,13 +12,8 @@ from typing import NamedTuple
 
 from costeer.base.described import nearest
 
-TRIGGER, SENSOR, MOTOR, KNOWLEDGE, DRIVER = (
-    "trigger",
-    "sensor",
-    "motor",
-    "knowledge",
-    "driver",
-)
+TRIGGER, SENSOR, MOTOR = "trigger", "sensor", "motor"
+KNOWLEDGE, CAR, DRIVER = "knowledge", "car", "driver"
 """Who makes a mistake."""
 
 
@@ -39,7 +34,7 @@ class MistakeKind(NamedTuple):
 
     Attributes:
         about: One sentence for people; `{}` stands for the size.
-        whose: `TRIGGER`, `SENSOR`, `MOTOR`, `KNOWLEDGE` or `DRIVER`.
+        whose: Who makes it: `TRIGGER` to `DRIVER`.
         leaf: Dotted name of the parameter that takes the size.
         unit: Of the size; empty if there is none.
         size: Usual one.
@@ -163,7 +158,7 @@ MISTAKES: dict[str, MistakeKind] = {
     ),
     "friction": MistakeKind(
         "the column's friction is {} times what the method believes",
-        KNOWLEDGE,
+        CAR,
         "mistakes.friction_ratio",
         "-",
         2.0,

@@ -21,9 +21,9 @@ from scipy import stats
 from costeer.loop.scenario import TrialSetup
 from costeer.loop.trial import simulate_trial
 from costeer.methods.conditions import MANUAL
+from costeer.scale.jobs import default_jobs, run_jobs
 from costeer.sessions.plan import Plan, Step, session_steps, trial_of
 from costeer.sessions.scenarios import scenario_beside
-from costeer.study.jobs import default_jobs, run_jobs
 from costeer.study.measures import lane_change_rows, trial_row
 from costeer.study.statistics import MEASURES
 

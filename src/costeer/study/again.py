@@ -8,7 +8,8 @@ from pathlib import Path
 
 from costeer.records.metadata import PERSON
 from costeer.records.record import read_record
-from costeer.study.folder import locked, read_study, record_path
+from costeer.study.folder import read_study, record_path
+from costeer.study.locks import locked
 from costeer.study.material import find_records
 from costeer.study.people import People, write_people_tables
 from costeer.study.report import write_report

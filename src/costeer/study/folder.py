@@ -1,31 +1,35 @@
 """The study's folder: who may write in it, and what it says it is.
 
 `study.yaml` holds all that is needed to run the study again. A folder belongs to one
-configuration, and one process works in it at a time; the lock is the kernel's, so
-that a killed owner holds nothing.
+configuration.
 """
 
 from __future__ import annotations
 
 import hashlib
 import json
-import os
-import socket
 from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import yaml
-from filelock import FileLock, Timeout
 
 from costeer.base.files import prepare_folder, read_whole, write_text
+from costeer.scale.shard import WHOLE, Shard
 from costeer.study.changes import refusal
 from costeer.study.kinds import wrong_kind
+from costeer.study.locks import (
+    LOCK_FILE,
+    beginning_shard,
+    locked,
+    locked_shard,
+    shard_lock,
+)
 
 STUDY_FILE = "study.yaml"
-LOCK_FILE = ".lock"
 RECORDS = "records"
+RESULTS = "results"
 _LARGEST = 1_000_000
 """Values of a configuration; no study has a hundredth of it."""
 
@@ -58,6 +62,11 @@ def configuration_hash(configuration: dict[str, Any]) -> str:
 def record_path(folder: Path, participant: int, condition: str) -> Path:
     """Return where the trial's record lies: `records/03-strong-rapid.parquet`."""
     return folder / RECORDS / f"{participant:02d}-{condition}.parquet"
+
+
+def result_path(folder: Path, participant: int, condition: str) -> Path:
+    """Return where the measures of a trial without a record lie."""
+    return folder / RESULTS / f"{participant:02d}-{condition}.json"
 
 
 def read_study(path: Path) -> StudyFolder:
@@ -127,65 +136,67 @@ def unusable(file: Path, why: str) -> str:
 
 @contextmanager
 def opened_study(
-    path: Path, configuration: dict[str, object], command: str
+    path: Path,
+    configuration: dict[str, object],
+    command: str,
+    shard: Shard = WHOLE,
 ) -> Iterator[StudyFolder]:
-    """Hold the folder for this configuration, new or begun before.
+    """Hold the folder, or a shard of it, for this configuration, new or begun before.
 
     Args:
         path: Made if it is not there.
         configuration: All that determines the results.
         command: That runs the study again; a comment in `study.yaml`.
+        shard: To hold; others may work on the other shards meanwhile.
 
     Raises:
         ValueError: If the folder is another study's, holds other things, or another
             process works in it.
         OSError: If it cannot be written.
     """
-    prepare_folder(path, STUDY_FILE, "study", (LOCK_FILE,))
-    with locked(path):
-        folder = StudyFolder(
-            path, dict(configuration), configuration_hash(configuration)
-        )
-        if (path / STUDY_FILE).exists():
-            _refuse_other(folder, read_study(path))
+    folder = StudyFolder(path, dict(configuration), configuration_hash(configuration))
+    with ExitStack() as held:
+        if shard.total == 1:
+            prepare_folder(path, STUDY_FILE, "study", (LOCK_FILE,))
+            held.enter_context(locked(path))
+            _begin(folder, command, alone=True)
         else:
-            write_text(path / STUDY_FILE, _study_text(folder, command))
-        _remove_leftovers(path)
-        (path / RECORDS).mkdir(exist_ok=True)
+            held.enter_context(_begun_shard(folder, command, shard))
         yield folder
 
 
 @contextmanager
-def locked(path: Path) -> Iterator[None]:
-    """Hold the folder against other processes.
+def _begun_shard(folder: StudyFolder, command: str, shard: Shard) -> Iterator[None]:
+    """Hold a shard; many begin at once, so each prepares the folder while it holds it.
 
     Raises:
-        ValueError: If another process holds it.
+        ValueError: As `opened_study`.
     """
-    file = path / LOCK_FILE
-    owner = _owner(file)
-    lock = FileLock(file, thread_local=False)
-    try:
-        lock.acquire(timeout=0)
-    except Timeout:
-        raise ValueError(
-            f"{path} is in use by another costeer ({owner}); wait until it has "
-            "ended, or choose another folder"
-        ) from None
-    try:
-        with suppress(OSError):  # Windows lets nobody write to a locked file
-            file.write_text(f"process {os.getpid()} on {socket.gethostname()}")
+    path = folder.path
+    locks = [shard_lock(path, Shard(n + 1, shard.total)) for n in range(shard.total)]
+    if path.is_dir() or not path.exists():
+        path.mkdir(parents=True, exist_ok=True)
+    else:
+        prepare_folder(path, STUDY_FILE, "study")  # refuses it
+    with ExitStack() as held:
+        with beginning_shard(path, shard) as alone:
+            left = (LOCK_FILE, *(each.name for each in locks))
+            prepare_folder(path, STUDY_FILE, "study", left)
+            held.enter_context(locked_shard(path, shard))
+            _begin(folder, command, alone)
         yield
-    finally:
-        with suppress(OSError):  # Windows removes it only once it is released
-            file.unlink()
-        lock.release()
 
 
-def _owner(file: Path) -> str:
-    with suppress(OSError, UnicodeDecodeError):
-        return file.read_text() or "a process that just started"
-    return "a process that just started"
+def _begin(folder: StudyFolder, command: str, alone: bool) -> None:
+    """Write what the study is, or see that the folder is the same study's."""
+    path = folder.path
+    if (path / STUDY_FILE).exists():
+        _refuse_other(folder, read_study(path))
+    else:
+        write_text(path / STUDY_FILE, _study_text(folder, command))
+    if alone:
+        _remove_leftovers(path)
+    (path / RECORDS).mkdir(exist_ok=True)
 
 
 def _refuse_other(wanted: StudyFolder, found: StudyFolder) -> None:
@@ -207,6 +218,6 @@ def _study_text(folder: StudyFolder, command: str) -> str:
 
 def _remove_leftovers(path: Path) -> None:
     """Remove what a killed process had half written."""
-    for folder in (path, path / RECORDS, path / "figures"):
+    for folder in (path, path / RECORDS, path / RESULTS, path / "figures"):
         for leftover in folder.glob("*.tmp"):
             leftover.unlink(missing_ok=True)

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Collection
 from pathlib import Path
 from typing import NamedTuple
 
@@ -17,15 +18,18 @@ from numpy.typing import NDArray
 
 from costeer.controller.replanning import ReplanningParameters
 from costeer.methods.conditions import CONDITION_NAMES, MANUAL
+from costeer.records.columns import TrialRecord
 from costeer.records.metadata import PERSON
 from costeer.records.record import read_record
 from costeer.study.definitions import DEFAULTS, MeasureParameters
+from costeer.study.design import Trial
 from costeer.study.folder import RECORDS, StudyFolder, read_study
 from costeer.study.measures import parameters_of, prepared
 from costeer.study.occasions import again_pairs
 from costeer.study.outcome import WITHIN, PairRow, StudyTests, SummaryRow
 from costeer.study.people import People, Who, tested_answers
 from costeer.study.quantities import WORKLOAD, Quantity
+from costeer.study.results import read_result
 from costeer.study.statistics import MEASURES, Measure, study_tests
 from costeer.study.trial_measures import trial_measures
 from costeer.study.trial_tables import (
@@ -55,6 +59,7 @@ class StudyMaterial(NamedTuple):
         scenario: Rows of `scenario_measures.csv`; None on the paper's scenario.
         road: Parameters of the measures with the lanes that were driven on.
         again: Trials of conditions that were driven more than once, beside the first.
+        num_results: Trials of which measures were kept and no record.
     """
 
     study: StudyFolder
@@ -70,6 +75,7 @@ class StudyMaterial(NamedTuple):
     scenario: pd.DataFrame | None = None
     road: MeasureParameters = DEFAULTS
     again: tuple[PairRow, ...] = ()
+    num_results: int = 0
 
 
 def read_material(folder: Path, people: People | None = None) -> StudyMaterial:
@@ -92,7 +98,9 @@ def read_material(folder: Path, people: People | None = None) -> StudyMaterial:
     found = find_records(folder) if people is None else people.records
     # A record without a row was not believed when the tables were made.
     records = {k: path for k, path in found.items() if k in measured}
-    first = next(iter(records.values()), None)
+    about = [read_record(path, ()).metadata for path in records.values()]
+    results = [] if people else _descriptions(study, measured - records.keys())
+    about += results
     return StudyMaterial(
         study=study,
         trials=trials,
@@ -100,15 +108,25 @@ def read_material(folder: Path, people: People | None = None) -> StudyMaterial:
         triggers=_read_measured(folder / TRIGGERS_FILE, measured, people),
         tests=tests,
         records=records,
-        metadata=tuple(read_record(path, ()).metadata for path in records.values()),
+        metadata=tuple(about),
         people=people,
         answers=None if people is None else tested_answers(people),
         scenario=_read_measured(folder / SCENARIO_FILE, measured, people),
         again=()
         if people is None
         else again_pairs(people, all_trials, all_changes, measures),
-        road=DEFAULTS if first is None else parameters_of(read_record(first, ())),
+        road=parameters_of(TrialRecord(about[0], {})) if about else DEFAULTS,
+        num_results=len(results),
     )
+
+
+def _descriptions(
+    study: StudyFolder, keys: Collection[tuple[Who, str]]
+) -> list[dict[str, object]]:
+    """What trials without a record would say of themselves."""
+    trials = (Trial(int(who), name, 0) for who, name in sorted(keys, key=str))
+    results = (read_result(study, trial) for trial in trials)
+    return [dict(each.about) for each in results if each is not None]
 
 
 def read_virtual(folder: Path) -> StudyMaterial:

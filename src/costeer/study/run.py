@@ -1,8 +1,8 @@
 """The study from the first trial to the report: run, stop, resume.
 
-Each trial is a job of its own: simulate, write the record, measure it. A trial whose
+Each trial is a task of its own: simulate, write the record, measure it. A trial whose
 record is complete and of this configuration is not simulated again, so that an
-interrupted study goes on where it stopped. Nothing depends on which job runs when.
+interrupted study goes on where it stopped. Nothing depends on who does what when.
 """
 
 from __future__ import annotations
@@ -12,13 +12,15 @@ import shlex
 from collections.abc import Callable, Sequence
 from functools import partial
 from pathlib import Path
-from typing import Any, NamedTuple, TypeVar
+from typing import Any, NamedTuple
 
 from costeer.loop.trial import simulate_trial
+from costeer.scale.cluster import workers
+from costeer.scale.jobs import JobsStoppedError, Pool, run_jobs
+from costeer.scale.shard import WHOLE, Shard, part
 from costeer.study.configuration import (
     PUBLISHED_STUDY,
     StudySettings,
-    check_count,
     check_settings,
     settings_of,
     study_configuration,
@@ -28,24 +30,42 @@ from costeer.study.design import Trial
 from costeer.study.folder import (
     STUDY_FILE,
     StudyFolder,
-    locked,
     opened_study,
     read_study,
     unusable,
 )
-from costeer.study.jobs import MOST_JOBS, JobsStoppedError, default_jobs, run_jobs
-from costeer.study.trial_tables import write_trial_tables
+from costeer.study.locks import locked
+from costeer.study.trial_tables import FailedRow, write_trial_tables
 from costeer.study.trials import (
     Simulate,
     TrialDone,
     finish_trial,
+    keep_result,
+    kept_trial,
     resumed_trial,
+    rows_of,
     study_trials,
     try_plug_ins,
 )
 
 WriteReport = Callable[[Path], object]
-Done = TypeVar("Done", bound="TrialDone | None")
+
+
+class Scale(NamedTuple):
+    """Where the work is done and what is kept; no number in a table depends on it.
+
+    Attributes:
+        cluster: `local:N` or the address of a scheduler; empty for threads here.
+        records: Whether the trials' records are kept, or their measures alone.
+        shard: Part of the trials, for one job of many.
+    """
+
+    cluster: str = ""
+    records: bool = True
+    shard: Shard = WHOLE
+
+
+ONE_MACHINE = Scale()
 
 
 class StudyOutcome(NamedTuple):
@@ -53,15 +73,17 @@ class StudyOutcome(NamedTuple):
 
     Attributes:
         folder: Where everything lies.
-        num_trials: Of the study.
+        num_trials: Of the study, or of the shard.
         num_resumed: Of them, not simulated again.
         driver_seconds: Simulated in this run [s].
+        failed: Trials without a result.
     """
 
     folder: Path
     num_trials: int
     num_resumed: int
     driver_seconds: float
+    failed: tuple[FailedRow, ...] = ()
 
 
 class StudyInterrupted(KeyboardInterrupt):
@@ -92,6 +114,7 @@ def run_study(
     report: WriteReport | None = full_report,
     progress: Callable[[TrialDone], None] = ignore,
     simulate: Simulate = simulate_trial,
+    scale: Scale = ONE_MACHINE,
 ) -> StudyOutcome:
     """Run the experiment, or finish one that was begun in the folder.
 
@@ -100,61 +123,117 @@ def run_study(
         settings: What to run.
         jobs: Trials at the same time; as many as processors if None. The results do
             not depend on it.
-        report: Writes tests, figures and report; None for tables only.
+        report: Writes tests, figures and report; None for tables only. A shard writes
+            neither: `merge_study` does when all are there.
         progress: Called in this thread with each trial that is done.
         simulate: Makes the record of a trial.
+        scale: Cluster, shard, and whether records are kept.
+
+    Returns:
+        What was done; a trial that failed is named there and in `failures.csv`.
 
     Raises:
-        ValueError: If a setting is out of range, or the folder is another study's or
-            in use.
+        ValueError: If a setting is out of range, the folder is another study's or in
+            use, a worker has another costeer, or every trial failed.
         OSError: If a file cannot be written; finished trials are kept.
         StudyInterrupted: If the user stopped it; finished trials are kept.
     """
     settings = check_settings(settings)
-    jobs = default_jobs() if jobs is None else jobs
-    check_count("jobs", jobs, 1, MOST_JOBS)
     driven = with_files_read(settings)
     configuration = study_configuration(settings)
-    try_plug_ins(driven, simulate)
-    with opened_study(Path(out), configuration, study_command(settings)) as folder:
-        work = partial(finish_trial, folder, driven, simulate)
-        done = _all_done(folder, work, jobs, progress)
-        _write_results(folder.path, done, report)
+    command = study_command(settings)
+    with workers(jobs, scale.cluster) as pool:
+        try_plug_ins(driven, simulate)
+        with opened_study(Path(out), configuration, command, scale.shard) as folder:
+            work = partial(
+                finish_trial, folder, driven, simulate, records=scale.records
+            )
+            done = _finished(folder, work, pool, progress, scale)
+            if scale.shard.total == 1:
+                write_results(folder, done, report)
+    return outcome_of(folder.path, done)
+
+
+def outcome_of(path: Path, done: Sequence[TrialDone]) -> StudyOutcome:
+    """What there is, in numbers."""
     return StudyOutcome(
-        folder=folder.path,
+        folder=path,
         num_trials=len(done),
         num_resumed=sum(each.resumed for each in done),
         driver_seconds=sum(each.driver_seconds for each in done if not each.resumed),
+        failed=_failed(done),
     )
 
 
+def _finished(
+    folder: StudyFolder,
+    work: Callable[[Trial], TrialDone],
+    pool: Pool,
+    progress: Callable[[TrialDone], None],
+    scale: Scale,
+) -> list[TrialDone]:
+    """Do the trials of the shard that are not done; return all of them in order."""
+    trials = part(study_trials(settings_in(folder)), scale.shard)
+    there = {} if scale.records else _kept(folder, trials)
+    for each in there.values():
+        progress(each)
+    waiting = [trial for trial in trials if trial not in there]
+    new = _all_done(folder, work, waiting, pool, progress, len(there))
+    found = there | {each.trial: each for each in new}
+    return [found[trial] for trial in trials]
+
+
+def _kept(folder: StudyFolder, trials: Sequence[Trial]) -> dict[Trial, TrialDone]:
+    """Trials that were measured before; those that failed are tried again."""
+    found = (kept_trial(folder, trial) for trial in trials)
+    return {each.trial: each for each in found if each and not each.failure}
+
+
+def _failed(done: Sequence[TrialDone]) -> tuple[FailedRow, ...]:
+    return tuple(FailedRow(*each.trial, each.failure) for each in done if each.failure)
+
+
 def remake_tables(path: Path, jobs: int | None = None) -> int:
-    """Write the tables of measures again from the records on disk.
+    """Write the tables of measures again from the records and results on disk.
 
     Args:
         path: A study's folder, finished or not.
         jobs: Records measured at the same time; as many as processors if None.
 
     Returns:
-        The number of trials that have a complete record.
+        The number of trials that have a complete record or result.
 
     Raises:
-        ValueError: If it is no study, in use, or no trial has a complete record.
+        ValueError: If it is no study, in use, or no trial has one.
         OSError: If a file cannot be read or written.
     """
     folder = read_study(path)
     with locked(path):
-        work = partial(resumed_trial, folder)
-        jobs = default_jobs() if jobs is None else jobs
-        found = _all_done(folder, work, jobs, ignore)
-        done = [each for each in found if each is not None]
-        if not done:
+        done = trials_on_disk(folder, jobs)
+        if not any(not each.failure for each in done):
             raise ValueError(
                 f"no trial of the study in {path} has a complete record; the first "
                 "lines of its study.yaml hold the command that makes them"
             )
-        _write_results(path, done, None)
-    return len(done)
+        write_results(folder, done, None)
+    return sum(not each.failure for each in done)
+
+
+def trials_on_disk(folder: StudyFolder, jobs: int | None = None) -> list[TrialDone]:
+    """The trials of a study that have a record, a result or a failure, in order.
+
+    Args:
+        folder: Of the study.
+        jobs: Records measured at the same time; as many as processors if None.
+    """
+
+    def found(trial: Trial) -> TrialDone | None:
+        return resumed_trial(folder, trial) or kept_trial(folder, trial)
+
+    trials = study_trials(settings_in(folder))
+    with workers(jobs) as pool:
+        done = run_jobs(found, trials, pool, ignore)
+    return [each for each in done if each is not None]
 
 
 def study_command(settings: StudySettings) -> str:
@@ -217,18 +296,22 @@ def settings_in(folder: StudyFolder) -> StudySettings:
 
 def _all_done(
     folder: StudyFolder,
-    work: Callable[[Trial], Done],
-    jobs: int,
-    progress: Callable[[Done], None],
-) -> list[Done]:
-    trials = study_trials(settings_in(folder))
+    work: Callable[[Trial], TrialDone],
+    trials: Sequence[Trial],
+    pool: Pool,
+    progress: Callable[[TrialDone], None],
+    num_there: int,
+) -> list[TrialDone]:
+    def keep(_: Trial, done: TrialDone) -> TrialDone:
+        return keep_result(folder, done)
+
     try:
-        return run_jobs(work, trials, jobs, progress)
+        return run_jobs(work, trials, pool, progress, keep)
     except JobsStoppedError as stop:
         failed = None if stop.failed is None else trials[stop.failed]
         kept = (
-            f"{stop.num_done} of {len(trials)} trials are done and kept in "
-            f"{folder.path}; run the same command again to go on from there"
+            f"{num_there + stop.num_done} of {num_there + len(trials)} trials are done "
+            f"and kept in {folder.path}; run the same command again to go on from there"
         )
         raise _explained(stop.__cause__, failed, kept) from stop.__cause__
 
@@ -256,15 +339,26 @@ def _reason(error: OSError) -> str:
     return f"{error.strerror or error}{name}"
 
 
-def _write_results(
-    path: Path, done: Sequence[TrialDone], report: WriteReport | None
+def write_results(
+    folder: StudyFolder, done: Sequence[TrialDone], report: WriteReport | None
 ) -> None:
+    """Write the tables, rows read one trial after another, then the report.
+
+    Raises:
+        ValueError: If every trial failed.
+    """
+    failed = _failed(done)
+    if len(failed) == len(done):
+        raise ValueError(
+            f"all {len(done)} trials failed, the first with: {failed[0].reason}"
+        )
+    rows = (rows_of(folder, each) for each in done)
     try:
-        write_trial_tables(path, [each.rows for each in done])
+        write_trial_tables(folder.path, (each for each in rows if each), failed)
         if report is not None:
-            report(path)
+            report(folder.path)
     except KeyboardInterrupt:
         raise StudyInterrupted(
-            f"all {len(done)} trials are done and kept in {path}; run the same "
+            f"all {len(done)} trials are done and kept in {folder.path}; run the same "
             "command again for what is missing"
         ) from None

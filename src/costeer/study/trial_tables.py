@@ -9,19 +9,21 @@ from __future__ import annotations
 import csv
 import io
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
-from typing import NamedTuple
+from typing import NamedTuple, TextIO
 
 import numpy as np
 
-from costeer.base.files import write_text
+from costeer.base.files import replacing, write_text
 from costeer.study.trigger_costs import COST_COLUMNS
 
 TRIALS_FILE = "trials.csv"
 LANE_CHANGES_FILE = "lane_changes.csv"
 TRIGGERS_FILE = "triggers.csv"
 SCENARIO_FILE = "scenario_measures.csv"
+FAILURES_FILE = "failures.csv"
 
 LANE_CHANGE_COLUMNS = (
     "participant",
@@ -83,21 +85,85 @@ class TrialRows(NamedTuple):
     scenario: Sequence[Row] = ()
 
 
-def write_trial_tables(folder: Path, trials: Sequence[TrialRows]) -> None:
-    """Write the tables, rows in the order of the trials.
+class FailedRow(NamedTuple):
+    """A row of `failures.csv`: a trial without a result.
 
-    That of the scenario is there only if it has rows.
+    Attributes:
+        participant: Who.
+        condition: Of the trial.
+        order: Its place in the participant's day, from 1.
+        reason: Why it failed.
     """
-    write_csv(folder / TRIALS_FILE, [each.measures for each in trials])
-    changes = [row for each in trials for row in each.lane_changes]
-    write_csv(folder / LANE_CHANGES_FILE, changes, LANE_CHANGE_COLUMNS)
-    events = [row for each in trials for row in each.triggers]
-    write_csv(folder / TRIGGERS_FILE, events, TRIGGER_COLUMNS)
-    values = [row for each in trials for row in each.scenario]
-    if values:
-        write_csv(folder / SCENARIO_FILE, values)
-    else:
-        (folder / SCENARIO_FILE).unlink(missing_ok=True)
+
+    participant: int
+    condition: str
+    order: int
+    reason: str
+
+
+def write_trial_tables(
+    folder: Path, trials: Iterable[TrialRows], failed: Sequence[FailedRow] = ()
+) -> None:
+    """Write the tables, rows in the order of the trials, which are read one by one.
+
+    Those of the scenario and of failures are there only if they have rows.
+    """
+    with ExitStack() as open_tables:
+
+        def table(name: str, columns: Sequence[str] | None = ()) -> _Table:
+            return _Table(open_tables, folder / name, columns)
+
+        measures = table(TRIALS_FILE)
+        changes = table(LANE_CHANGES_FILE, LANE_CHANGE_COLUMNS)
+        triggers = table(TRIGGERS_FILE, TRIGGER_COLUMNS)
+        scenario = table(SCENARIO_FILE, None)
+        failures = table(FAILURES_FILE, None)
+        for each in trials:
+            measures.write([each.measures])
+            changes.write(each.lane_changes)
+            triggers.write(each.triggers)
+            scenario.write(each.scenario)
+        failures.write([row._asdict() for row in failed])
+
+
+class _Table:
+    """A CSV file that grows row by row and takes its place at the end.
+
+    Args:
+        stack: Closes it.
+        file: To write or replace.
+        columns: Head of a table without rows; None if it is then not there.
+    """
+
+    def __init__(
+        self, stack: ExitStack, file: Path, columns: Sequence[str] | None
+    ) -> None:
+        self._columns = columns
+        self._file = file
+        self._names: list[str] | None = None
+        self._stream = stack.enter_context(self._opened())
+        self._writer = csv.writer(self._stream, lineterminator="\n")
+
+    @contextmanager
+    def _opened(self) -> Iterator[TextIO]:
+        """The stream; at the end the head of a table without rows, or no table."""
+        with (
+            replacing(self._file) as partial,
+            partial.open("w", encoding="utf-8", newline="") as stream,
+        ):
+            yield stream
+            if self._names is None and self._columns is not None:
+                self._writer.writerow(self._columns)
+        if self._names is None and self._columns is None:
+            self._file.unlink()
+
+    def write(self, rows: Sequence[Row]) -> None:
+        """Add rows of the same keys."""
+        for row in rows:
+            if self._names is None:
+                self._names = list(row)
+                self._writer.writerow(self._names)
+            self._writer.writerow([cell(row[name]) for name in self._names])
 
 
 def write_csv(file: Path, rows: Sequence[Row], columns: Sequence[str] = ()) -> None:

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import NamedTuple
+from collections.abc import Callable, Mapping
+from typing import Any, NamedTuple
 
 from costeer.intention.predictors.registry import PREDICTORS
 from costeer.loop.scenario import TrialSetup
 from costeer.methods.conditions import CONDITION_NAMES, MANUAL
 from costeer.methods.registry import METHODS
 from costeer.records.record import TrialRecord, read_record, write_record
+from costeer.scale.worker import place
 from costeer.study.configuration import StudySettings, trial_setup
 from costeer.study.design import Trial, plan_trials
 from costeer.study.folder import StudyFolder, record_path
@@ -18,6 +19,13 @@ from costeer.study.measures import (
     scenario_measure_rows,
     trial_row,
     trigger_rows,
+)
+from costeer.study.results import (
+    TrialResult,
+    description,
+    read_result,
+    remove_result,
+    write_result,
 )
 from costeer.study.trial_tables import TrialRows
 
@@ -31,17 +39,28 @@ Simulate = Callable[[TrialSetup], TrialRecord]
 
 
 class TrialDone(NamedTuple):
-    """One trial that is on disk and measured.
+    """One trial that is measured, or has failed.
 
     Attributes:
-        rows: What the tables say of it.
+        trial: Which one.
+        rows: What the tables say of it; None if it failed, or a file of results has
+            them.
         driver_seconds: Its length [s].
-        resumed: Whether its record was there before.
+        resumed: Whether it was there before.
+        failure: Why it failed; empty if it did not.
+        about: What its record says of it, if there is no record to say it.
     """
 
-    rows: TrialRows
+    trial: Trial
+    rows: TrialRows | None
     driver_seconds: float
     resumed: bool
+    failure: str = ""
+    about: Mapping[str, Any] | None = None  # as JSON gives it back
+
+
+class OtherCodeError(ValueError):
+    """A trial that was driven by other code than the study's."""
 
 
 def study_trials(settings: StudySettings) -> list[Trial]:
@@ -70,32 +89,120 @@ def try_plug_ins(settings: StudySettings, simulate: Simulate) -> None:
 
 
 def finish_trial(
-    folder: StudyFolder, settings: StudySettings, simulate: Simulate, trial: Trial
+    folder: StudyFolder,
+    settings: StudySettings,
+    simulate: Simulate,
+    trial: Trial,
+    records: bool = True,
 ) -> TrialDone:
-    """Make sure that the trial's record is on disk, and measure it.
+    """Make sure that the trial is measured, and its record on disk if it is wanted.
 
     Args:
         folder: Of the study.
         settings: Of the study.
         simulate: Called if there is no record to believe.
         trial: Which one.
+        records: Whether its record is kept.
+
+    Returns:
+        Its measures, or why there are none.
 
     Raises:
         OSError: If the record cannot be written; nothing is left of it.
+        OtherCodeError: If the code that is plugged in is not the study's.
     """
     there = resumed_trial(folder, trial)
     if there is not None:
         return there
-    made = simulate(trial_setup(settings, trial))
-    record = made._replace(metadata={**made.metadata, HASH_FIELD: folder.hash})
+    try:
+        made = simulate(trial_setup(settings, trial))
+        _check_code(folder, made)
+        record = made._replace(metadata={**made.metadata, HASH_FIELD: folder.hash})
+        measured = _measured(trial, record, resumed=False)
+    except (OSError, MemoryError, OtherCodeError):
+        raise
+    except Exception as error:  # of this trial alone; the study goes on
+        return TrialDone(trial, None, 0.0, resumed=False, failure=_reason(error))
+    if not records:
+        return measured._replace(about=description(record))
     write_record(record_path(folder.path, trial.participant, trial.condition), record)
-    return _measured(trial, record, resumed=False)
+    remove_result(folder, trial)
+    return measured
+
+
+def _reason(error: Exception) -> str:
+    """Why a trial failed, on one line."""
+    words = " ".join(str(error).split())
+    return (
+        words if isinstance(error, ValueError) else f"{type(error).__name__}: {words}"
+    )
+
+
+def _check_code(folder: StudyFolder, made: TrialRecord) -> None:
+    """Refuse a trial of an edited method or predictor, here or on a worker.
+
+    Raises:
+        OtherCodeError: Naming what was edited.
+    """
+    if made.metadata.get("condition") == MANUAL:
+        return
+    plugged_in = ("method_source_hash", "method"), ("intention_model_hash", "predictor")
+    for name, words in plugged_in:
+        wanted, found = folder.configuration.get(name), made.metadata.get(name)
+        if None not in (wanted, found) and wanted != found:
+            raise OtherCodeError(
+                f"{place()} has another {words} than this study was begun with; give "
+                "all workers the same files"
+            )
+
+
+def keep_result(folder: StudyFolder, done: TrialDone) -> TrialDone:
+    """Keep what no record keeps, measures or a failure, in the folder's results.
+
+    Returns:
+        The trial without the rows that are kept, so that a thousand drivers need no
+        more memory than ten.
+
+    Raises:
+        OSError: If it cannot be written.
+    """
+    if done.resumed or (done.about is None and not done.failure):
+        return done
+    result = TrialResult(done.rows, done.driver_seconds, done.about or {}, done.failure)
+    write_result(folder, done.trial, result)
+    return done._replace(rows=None, about=None)
 
 
 def resumed_trial(folder: StudyFolder, trial: Trial) -> TrialDone | None:
     """Measure the trial's record on disk; None if there is none to believe."""
     record = believed_record(folder, trial)
     return None if record is None else _measured(trial, record, resumed=True)
+
+
+def kept_trial(folder: StudyFolder, trial: Trial) -> TrialDone | None:
+    """A trial that was measured without a record, or failed; None if there is none.
+
+    Its rows stay in the file.
+    """
+    result = read_result(folder, trial)
+    if result is None:
+        return None
+    return TrialDone(trial, None, result.driver_seconds, True, result.failure)
+
+
+def rows_of(folder: StudyFolder, done: TrialDone) -> TrialRows | None:
+    """The rows of a trial, read from the results if they are there; None if it failed.
+
+    Raises:
+        ValueError: If they were removed meanwhile.
+    """
+    if done.rows is not None or done.failure:
+        return done.rows
+    result = read_result(folder, done.trial)
+    if result is None or result.rows is None:
+        who = f"participant {done.trial.participant}, {done.trial.condition}"
+        raise ValueError(f"the result of {who} is gone; run the same command again")
+    return result.rows
 
 
 def believed_record(folder: StudyFolder, trial: Trial) -> TrialRecord | None:
@@ -119,4 +226,4 @@ def _measured(trial: Trial, record: TrialRecord, resumed: bool) -> TrialDone:
         scenario=scenario_measure_rows(record),
     )
     time = record.columns["time"]
-    return TrialDone(rows, float(time[-1] - time[0]), resumed)
+    return TrialDone(trial, rows, float(time[-1] - time[0]), resumed)

@@ -25,8 +25,8 @@ from costeer.loop.scenario import (
 from costeer.loop.trial import simulate_trial
 from costeer.plant.parameters import CarParameters
 from costeer.records.columns import TrialRecord
+from costeer.scale.jobs import run_jobs
 from costeer.study.definitions import Columns, Measure
-from costeer.study.jobs import run_jobs
 from costeer.study.segments import Segments
 from costeer.study.trial_measures import prepare, trial_measures
 

@@ -16,7 +16,7 @@ from costeer.base.array import Real
 from costeer.controller.actuation import STRONG, WEAK
 from costeer.loop.scenario import PILOT_SEED, TrialSetup
 from costeer.loop.trial import simulate_trial
-from costeer.study.jobs import JobsStoppedError, run_jobs
+from costeer.scale.jobs import JobsStoppedError, run_jobs
 
 UNDISPUTED = (("consistency.inconsistency_threshold", 100.0),)
 """A threshold that no run reaches, so that the gain stays full [W]."""

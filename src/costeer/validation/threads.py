@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import TypeVar
 
-from costeer.study.jobs import JobsStoppedError, run_jobs
+from costeer.scale.jobs import JobsStoppedError, run_jobs
 
 Task = TypeVar("Task")
 Result = TypeVar("Result")

@@ -141,8 +141,8 @@ def cars_of_record(about: Mapping[str, object], length: float) -> list[list[obje
     if not isinstance(seed, int) or not isinstance(participant, int):
         return []
     try:
-        told = _without_nulls(_mapping(about.get("scenario")))
-        scenario = checked(filled(Scenario, told, "scenario"))
+        given = _without_nulls(_mapping(about.get("scenario")))
+        scenario = checked(filled(Scenario, given, "scenario"))
         draw = Draw(seed, participant, length, CarParameters())
         return cars_of(scenario, world_of(scenario, draw).fleet)
     except (ValueError, TypeError, OverflowError):

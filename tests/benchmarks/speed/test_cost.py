@@ -30,7 +30,7 @@ from benchmarks.speed.verdicts import measure_verdict, single_verdicts
 from costeer.intention.gru import random_weights
 from costeer.intention.kernel import LAYOUT, _close_gates
 from costeer.intention.lanes import Floats, Lanes
-from costeer.study.jobs import default_jobs
+from costeer.scale.jobs import default_jobs
 
 TINY = Effort(rounds=2, calls=400, length=150.0, batch=1)
 

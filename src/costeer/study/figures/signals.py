@@ -71,15 +71,20 @@ def file_name(strength: str) -> str:
     return f"signals-{strength}"
 
 
+def title(strength: str) -> str:
+    """Return the title of the figure."""
+    return f"Signals of one participant, {strength}"
+
+
 def draw(material: StudyMaterial, strength: str) -> Exhibit:
     """Draw the conditions of one strength, with manual in grey behind each."""
-    name, title = file_name(strength), f"Signals of one participant, {strength}"
+    name, shown_title = file_name(strength), title(strength)
     participant = _most_complete(material, strength)
     moments = {} if participant is None else _moments(material, participant, strength)
     assisted = [key for key in moments if key != MANUAL]
     if participant is None or not assisted:
         lacking = f"No trial with {strength} guidance holds a lane change to the right."
-        return not_drawn(name, title, lacking)
+        return not_drawn(name, shown_title, lacking)
     shown = _told([moments[key] for key in assisted])
     figure = new_figure(FULL_WIDTH_MM, 178.0 / len(SIGNALS) * len(shown))
     margins = Margins(left=18.0, top=10.0, bottom=10.0, between_columns=5.0)
@@ -94,7 +99,7 @@ def draw(material: StudyMaterial, strength: str) -> Exhibit:
     figure.legend(handles=handles, ncols=len(handles), loc="upper right")
     caption = _caption(participant, strength, MANUAL in moments) + _left_out(shown)
     description = _description(participant, strength)
-    return Exhibit(name, title, caption, description, figure)
+    return Exhibit(name, shown_title, caption, description, figure)
 
 
 def _told(moments: list[Moment]) -> list[Signal]:

@@ -1,6 +1,6 @@
-"""Work in threads that can be stopped and never loses what is finished.
+"""Work in threads or on a cluster that can be stopped and loses nothing finished.
 
-Threads suffice, because compiled trials release the interpreter's lock.
+Threads suffice on one machine, because compiled trials release the interpreter's lock.
 """
 
 from __future__ import annotations
@@ -8,27 +8,20 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
-from typing import TypeVar
+from typing import TypeAlias, TypeVar
+
+from costeer.scale.blocks import Engine, JobsStoppedError, run_blocks
+
+__all__ = ["MOST_JOBS", "JobsStoppedError", "Pool", "default_jobs", "run_jobs"]
 
 Task = TypeVar("Task")
 Result = TypeVar("Result")
 
+Pool: TypeAlias = int | Engine
+"""Who works: so many threads of this process, or the workers of a cluster."""
+
 MOST_JOBS = 256
 _LOOK_EVERY = 0.2  # s; Windows delivers Ctrl-C only between waits
-
-
-class JobsStoppedError(Exception):
-    """Work that came to no end; its cause is what stopped it.
-
-    Attributes:
-        num_done: Tasks that were finished.
-        failed: Place of the task that failed; None if something else went wrong.
-    """
-
-    def __init__(self, num_done: int, failed: int | None) -> None:
-        super().__init__(f"stopped after {num_done} tasks")
-        self.num_done = num_done
-        self.failed = failed
 
 
 def usable_cores() -> int:
@@ -46,29 +39,39 @@ def default_jobs() -> int:
 def run_jobs(
     work: Callable[[Task], Result],
     tasks: Sequence[Task],
-    jobs: int,
+    pool: Pool,
     progress: Callable[[Result], None],
+    keep: Callable[[Task, Result], Result] | None = None,
 ) -> list[Result]:
-    """Do all tasks in threads; return the results in the order of the tasks.
+    """Do all tasks in threads or on a cluster; return the results in their order.
 
     When a task fails or the user interrupts, those that run are finished and no
     other is begun.
 
     Args:
-        work: Does one task.
+        work: Does one task. To a cluster it is sent, with all that it closes over.
         tasks: All of them.
-        jobs: How many threads.
+        pool: How many threads, or the cluster of `workers`.
         progress: Called in this thread with each result as it comes.
+        keep: Called in this process with each task and its result, also of tasks that
+            end after an interruption; what it returns takes the result's place.
 
     Raises:
         JobsStoppedError: From the error of a task, or from KeyboardInterrupt.
     """
-    with ThreadPoolExecutor(max_workers=jobs) as pool:
-        futures = [pool.submit(work, task) for task in tasks]
+    if not isinstance(pool, int):
+        return run_blocks(work, tasks, pool, progress, keep)
+
+    def done(task: Task) -> Result:
+        result = work(task)
+        return result if keep is None else keep(task, result)
+
+    with ThreadPoolExecutor(max_workers=pool) as threads:
+        futures = [threads.submit(done, task) for task in tasks]
         try:
             _watch(futures, progress)
         except BaseException as error:
-            pool.shutdown(wait=True, cancel_futures=True)
+            threads.shutdown(wait=True, cancel_futures=True)
             raise _stopped(futures) from error
     return [future.result() for future in futures]
 

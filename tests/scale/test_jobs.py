@@ -8,7 +8,7 @@ import time
 
 import pytest
 
-from costeer.study.jobs import JobsStoppedError, default_jobs, run_jobs
+from costeer.scale.jobs import JobsStoppedError, default_jobs, run_jobs
 from tests.waiting import PATIENCE
 
 

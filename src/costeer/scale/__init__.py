@@ -1,0 +1,1 @@
+"""Much work at once: threads here, workers elsewhere, shards of a batch system."""
