@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 from costeer import moved
 
 if TYPE_CHECKING:
+    from costeer.api.comparing import compare
     from costeer.api.measuring import (
         measures,
         sdlp,
@@ -47,6 +48,7 @@ __all__ = [
     "Record",
     "Scenario",
     "__version__",
+    "compare",
     "compiled",
     "evaluate",
     "fit_driver",
@@ -73,6 +75,7 @@ _PLACES = {
     "ReadingWarning": "api.recordings:ReadingWarning",
     "Record": "records.columns:TrialRecord",
     "Scenario": "scenarios.definition:Scenario",
+    "compare": "api.comparing:compare",
     "compiled": "base.array:compiled",
     "evaluate": "api.people:evaluate",
     "fit_driver": "api.people:fit_driver",

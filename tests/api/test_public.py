@@ -24,6 +24,7 @@ PROMISED = {
     "ReadingWarning",
     "Record",
     "Scenario",
+    "compare",
     "compiled",
     "evaluate",
     "fit_driver",

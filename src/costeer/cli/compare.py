@@ -133,7 +133,7 @@ def _run(
                 out,
                 settings,
                 jobs=jobs,
-                report=partial(full_report, tell=lambda words: None),
+                report=partial(full_report, tell=lambda words: note(f"report: {words}")),
                 progress=shown,
             )
         except StudyInterrupted as stop:

@@ -42,11 +42,11 @@ def report(
     from costeer.study.folder import STUDY_FILE
     from costeer.study.report import NUM_STEPS
 
-    if beside is not None and not (beside / STUDY_FILE).is_file():
-        raise ValueError(f"--beside is {beside}, which has no {STUDY_FILE}")
     if (folder / COMPARE_FILE).is_file():
         _remake_comparison(folder, beside)
         return
+    if beside is not None and not (beside / STUDY_FILE).is_file():
+        raise ValueError(f"--beside is {beside}, which has no {STUDY_FILE}")
     is_study = (folder / STUDY_FILE).is_file()
     people = None if is_study else _people(folder)
     apart = {} if people is None else people.apart

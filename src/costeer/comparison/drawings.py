@@ -31,6 +31,9 @@ BEFORE, AFTER = 6.0, 4.0
 """What is drawn around the event [s]."""
 
 _COLUMNS = 3
+_CLOSER_MM = 6.5
+"""The torques stand so much nearer to the path above than to the next drive."""
+
 _READ = ("time", "lateral_position", "driver_torque", "applied_torque")
 
 
@@ -45,7 +48,7 @@ def worst_drawings(folder: Path, cases: Sequence[WorstCase]) -> Exhibit:
     if not cases:
         return not_drawn(name, title, "Nobody left a lane or hit anything.")
     num_rows = -(-len(cases) // _COLUMNS)
-    figure = new_figure(FULL_WIDTH_MM, 10.0 + 46.0 * num_rows)
+    figure = new_figure(FULL_WIDTH_MM, _height_mm(num_rows))
     margins = Margins(
         left=12.0,
         right=3.0,
@@ -62,6 +65,7 @@ def worst_drawings(folder: Path, cases: Sequence[WorstCase]) -> Exhibit:
             upper.set_axis_off()
             lower.set_axis_off()
             continue
+        _raise(lower, _CLOSER_MM / _height_mm(num_rows))
         _draw(upper, lower, folder / WORST / cases[place].record, cases[place])
     handles, labels = grid[1][0].get_legend_handles_labels()
     figure.legend(handles, labels, loc="upper right", ncol=2)
@@ -75,6 +79,16 @@ def worst_drawings(folder: Path, cases: Sequence[WorstCase]) -> Exhibit:
         "the first event."
     )
     return Exhibit(name, title, caption, described, figure)
+
+
+def _height_mm(num_rows: int) -> float:
+    return 10.0 + 46.0 * num_rows
+
+
+def _raise(axes: Axes, share: float) -> None:
+    """Move a panel up by a share of the figure's height."""
+    left, bottom, width, height = axes.get_position().bounds
+    axes.set_position((left, bottom + share, width, height))
 
 
 def _draw(upper: Axes, lower: Axes, path: Path, case: WorstCase) -> None:

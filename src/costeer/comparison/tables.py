@@ -54,10 +54,10 @@ def winner_text(row: WinnerRow) -> str:
     if row.verdict != TIE:
         return row.best
     names = [row.best, *row.tied.split("; ")]
+    if len(names) == row.num_ranked > 2:
+        return f"tie of all {len(names)}"
     if len(names) <= MOST_NAMED:
         return "tie: " + ",\n".join(names)
-    if len(names) == row.num_ranked:
-        return f"tie of all {len(names)}"
     return f"tie of {len(names)}:\n{row.best} first"
 
 

@@ -92,10 +92,10 @@ def loses(found: Sequence[Loss], results: Results) -> str:
         if own:
             winners = Counter(loss.winner for loss in own)
             words = [f"{name} ({number})" for name, number in winners.most_common()]
-            parts.append(f"{each.title.lower()}: to {listed(words)}")
+            parts.append(f"in {lowered(each.title)} to {listed(words)}")
     return (
-        f"{'; '.join(parts)}. In brackets: in how many of "
-        f"{plural(len(results.scenarios), 'scenario')}. Table of losses below."
+        f"{PAPERS} loses {'; '.join(parts)}. In brackets: in how many of "
+        f"{plural(len(results.scenarios), 'scenario')}."
     )
 
 
@@ -130,4 +130,9 @@ def methods_paragraphs(results: Results) -> tuple[str, ...]:
 def speaking_title(name: str) -> str:
     """Aim and measure of a criterion that speaks for its aim."""
     found = criterion(name)
-    return f"{found.aim.capitalize()}: {found.title.lower()}"
+    return f"{found.aim.capitalize()}: {lowered(found.title)}"
+
+
+def lowered(title: str) -> str:
+    """A title within a sentence: `driver torque RMS`, but `SDLP`."""
+    return title if title[:2].isupper() else f"{title[:1].lower()}{title[1:]}"
