@@ -8,11 +8,12 @@ from typing import TYPE_CHECKING, Any
 
 from costeer.api.recordings import File, by_name
 from costeer.comparison.design import SCENARIOS, ComparisonSettings
-from costeer.comparison.mistakes import NONE, known_mistakes
+from costeer.comparison.mistakes import NONE
 from costeer.comparison.run import full_report, run_comparison
 from costeer.methods.interface import Method
 from costeer.methods.registry import AnyMethod
 from costeer.scenarios.definition import Scenario
+from costeer.scenarios.mistakes import MISTAKES
 
 if TYPE_CHECKING:
     from costeer.comparison.run import ComparisonOutcome
@@ -73,7 +74,7 @@ def compare(
     settings = ComparisonSettings(
         methods=() if _is_all(methods) else _several(methods),
         scenarios=_several(scenarios),
-        mistakes=known_mistakes() if _is_all(mistakes) else _several(mistakes),
+        mistakes=tuple(MISTAKES) if _is_all(mistakes) else _several(mistakes),
         participants=participants,
         seed=seed,
         condition=condition,

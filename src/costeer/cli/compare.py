@@ -105,6 +105,10 @@ def _words(text: str, option: str) -> tuple[str, ...]:
     return found
 
 
+def _tell(words: str) -> None:
+    note(f"report: {words}")
+
+
 def _run(
     out: Path, settings: ComparisonSettings, jobs: int | None
 ) -> tuple[ComparisonOutcome, float]:
@@ -133,7 +137,7 @@ def _run(
                 out,
                 settings,
                 jobs=jobs,
-                report=partial(full_report, tell=lambda words: note(f"report: {words}")),
+                report=partial(full_report, tell=_tell),
                 progress=shown,
             )
         except StudyInterrupted as stop:
