@@ -50,6 +50,7 @@ def test_trials_have_the_columns_of_a_virtual_study_and_the_workload(
         *virtual,
         "tlx_raw",
         "tlx_weighted",
+        *("label", "scenario", "occasion", "ended_by"),
     ]
 
 

@@ -59,7 +59,9 @@ def people_in(session: Session, answered: Sequence[Answered]) -> People:
     apart = {_word(each, main): found.of(each, main) for each in others}
     whole = found.of(main, main)
     log = tuple(each for each in out if each.series not in others)
-    return whole._replace(exclusions=log, apart=apart)
+    files = ", ".join(f"{REPORTS}/{name}/report.html" for name in apart)
+    which = f"Other series of trials have reports of their own: {files}."
+    return whole._replace(exclusions=log, apart=apart, which=which if apart else "")
 
 
 def _series(session: Session, drives: Sequence[Drive]) -> list[Series]:
@@ -122,21 +124,19 @@ class _People:
             study=people_study(folder, _configuration(session, series, own)),
             drives=own,
             exclusions=tuple(each for each in self._out if each.series == series),
-            said=(
-                *_what(series, main),
-                *sentences(session, own, answered, self._attempts),
-            ),
+            said=sentences(session, own, answered, self._attempts),
             num_withdrawn=num_withdrawn(session),
             again=in_order(later),
+            which=_which(series, main),
         )
 
 
-def _what(series: Series, main: Series) -> list[str]:
-    """Which of several series a report is of; nothing for the main one."""
+def _which(series: Series, main: Series) -> str:
+    """Which of several series a report is of; empty for the main one."""
     if series == main:
-        return []
-    which = f" for occasion {series[1]}" if series[1] > 1 else ""
-    return [f"This is of the trials on the scenario {series[0]}{which} alone."]
+        return ""
+    which = f", occasion {series[1]}" if series[1] > 1 else ""
+    return f"Only trials on the scenario {series[0]}{which}."
 
 
 def _counted(session: Session, person: Row, own: Sequence[Row]) -> dict[str, Row]:

@@ -118,6 +118,8 @@ class People(NamedTuple):
         again: Trials of the same scenario whose condition was driven before; they are
             compared with that one alone.
         apart: Other series, each for a report of its own, by name.
+        which: A sentence on which of several series this is; empty if it is the only
+            one.
     """
 
     study: StudyFolder
@@ -127,6 +129,7 @@ class People(NamedTuple):
     num_withdrawn: int = 0
     again: tuple[Drive, ...] = ()
     apart: Mapping[str, People] = {}
+    which: str = ""
 
     @property
     def all_drives(self) -> tuple[Drive, ...]:

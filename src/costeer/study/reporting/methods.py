@@ -133,8 +133,11 @@ def _data(material: StudyMaterial) -> list[str]:
     if people is not None:
         counts = Counter(each.state for each in people.exclusions)
         parts = [f"{n} {state}" for state, n in sorted(counts.items())]
-        why = f"Not analysed: {listed(parts)}; reasons stand in the exclusion log."
-        told.append(why if parts else "No trial was excluded or is missing.")
+        if parts:
+            why = "reasons stand in the exclusion log."
+            told.append(f"Not analysed: {listed(parts)}; {why}")
+        else:
+            told.append("No trial was excluded or is missing.")
         if people.num_withdrawn:
             gone = plural(people.num_withdrawn, "participant")
             told.append(f"{gone} withdrew, and all their data were deleted.")

@@ -90,7 +90,18 @@ def run_sentences(material: StudyMaterial) -> list[str]:
     """Say who drove what, how much of it is there, and how the intention was read."""
     sentences = [_drivers_sentence(material), _trials_sentence(material)]
     sentences += [_changes_sentence(material), _method_sentence(material)]
-    return sentences
+    return [*sentences, *_series_sentences(material)]
+
+
+def _series_sentences(material: StudyMaterial) -> list[str]:
+    """Say which of several series of trials this is, and how its trials ended."""
+    told = []
+    if material.people is not None and material.people.which:
+        told.append(material.people.which)
+    ended = material.trials.get("ended_by")
+    if ended is not None and (hit := int((ended == "collision").sum())):
+        told.append(f"{plural(hit, 'trial')} ended with a collision.")
+    return told
 
 
 def drivers(material: StudyMaterial, amount: int) -> str:
