@@ -87,11 +87,13 @@ def test_a_false_trigger_is_a_conflict_where_there_was_none(condition: str) -> N
     assert all(np.array_equal(false.costs[k], none.costs[k]) for k in same)
 
 
+@pytest.mark.slow
 def test_all_eight_changes_of_a_course_are_missed_or_all_announced() -> None:
     for event in (MISSED_CROSSING, ANNOUNCED_CROSSING):
         assert [found(name, event).num_events for name in DRIVEN] == [8] * len(DRIVEN)
 
 
+@pytest.mark.slow
 def test_a_system_that_notices_nothing_never_uses_its_duration() -> None:
     rapid, gentle = (
         found(f"strong-{pace}", MISSED_CROSSING) for pace in ("rapid", "gentle")
@@ -101,6 +103,7 @@ def test_a_system_that_notices_nothing_never_uses_its_duration() -> None:
     assert not alike(*told)
 
 
+@pytest.mark.slow
 def test_a_missed_change_meets_a_guidance_that_keeps_the_old_lane() -> None:
     missed = found("strong-rapid", MISSED_CROSSING).costs
     told = found("strong-rapid", ANNOUNCED_CROSSING).costs

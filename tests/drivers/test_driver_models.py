@@ -111,6 +111,7 @@ def test_the_example_brings_the_car_back_and_mirrors() -> None:
     assert np.abs(left[-120:]).max() < 0.15
 
 
+@pytest.mark.slow
 def test_replayed_hands_repeat_the_drive_they_were_taken_from() -> None:
     """Torque, not position, is replayed: the car drifts where the world differs."""
     short = ALONE._replace(length=110.0, initial_offset=0.4)
