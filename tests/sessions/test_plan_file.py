@@ -272,3 +272,16 @@ def test_a_plan_in_another_encoding_is_refused_by_its_name(tmp_path: Path) -> No
     (tmp_path / "plan.yaml").write_bytes("title: Fahrt übers Land".encode("latin-1"))
     with pytest.raises(ValueError, match=r"plan\.yaml is not YAML"):
         Session(tmp_path)
+
+
+def test_blanks_of_the_consent_are_told_until_they_are_filled(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["session", "new", str(tmp_path / "s")]) == 0
+    assert "blanks: contact, duration, ethics, inst" in capsys.readouterr().err
+    (tmp_path / "t/texts").mkdir(parents=True)
+    names = ("contact", "duration", "ethics", "institution")
+    filled = ", ".join(f"{name}: x" for name in names)
+    (tmp_path / "t/texts/en.yaml").write_text(f"blanks: {{{filled}}}")
+    assert main(["session", "new", str(tmp_path / "t")]) == 0
+    assert "blanks:" not in capsys.readouterr().err

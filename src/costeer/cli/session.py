@@ -148,7 +148,12 @@ def _new(folder: Path, plan: Path | None) -> None:
     from costeer.base.files import read_whole, write_text
     from costeer.sessions.balance import balance
     from costeer.sessions.plan import PLAN_FILE
-    from costeer.sessions.plan_file import check_words, paper_plan_text, parsed_plan
+    from costeer.sessions.plan_file import (
+        blank_notes,
+        check_words,
+        paper_plan_text,
+        parsed_plan,
+    )
     from costeer.sessions.scenarios import (
         is_file_name,
         scenario_notes,
@@ -172,6 +177,8 @@ def _new(folder: Path, plan: Path | None) -> None:
     for told in scenario_notes(found, own):
         note(f"costeer: {told}")
     write_text(target, text.decode("utf-8"))
+    for told in blank_notes(found, folder):
+        note(f"costeer: {told}")
     even = balance(found, range(1, found.participants + 1)).is_even
     told = "balanced" if even else "not balanced over so many"
     typer.echo(target)
@@ -191,7 +198,7 @@ class _Lab(NamedTuple):
 
 def _run(folder: Path, lab: _Lab, where: tuple[str, int], browser: bool) -> None:
     """Serve both pages until Ctrl-C."""
-    from costeer.sessions.plan_file import check_words
+    from costeer.sessions.plan_file import blank_notes, check_words
     from costeer.sessions.scenarios import scenario_notes
     from costeer.sessions.session import Session
     from costeer.study.locks import locked
@@ -207,7 +214,8 @@ def _run(folder: Path, lab: _Lab, where: tuple[str, int], browser: bool) -> None
             signal.signal(getattr(signal, name), _stop)
     session = Session(folder)
     check_words(session.plan, folder)
-    for told in scenario_notes(session.plan, folder):
+    blanks = blank_notes(session.plan, folder)
+    for told in (*scenario_notes(session.plan, folder), *blanks):
         note(f"costeer: {told}")
     _compile(session, devices)
     with locked(folder):  # a second one would take running drives for aborted

@@ -28,7 +28,7 @@ from costeer.sessions.plan import (
     session_steps,
     trial_of,
 )
-from costeer.sessions.questionnaires.instrument import load_instrument
+from costeer.sessions.questionnaires.instrument import load_instrument, unfilled
 from costeer.sessions.questionnaires.texts import load_texts
 from costeer.sessions.scenarios import scenario_beside
 from costeer.study.design import MOST_CONDITIONS
@@ -123,6 +123,24 @@ def check_words(plan: Plan, folder: Path | None, language: str = "") -> None:
         for step in (each, *each.after):
             if step.instrument:
                 load_instrument(step.instrument, chosen, folder)
+
+
+def blank_notes(plan: Plan, folder: Path) -> list[str]:
+    """Which places of the consent the lab has not filled; participants read them.
+
+    Raises:
+        ValueError: If words or questionnaires are not there.
+        OSError: If a file cannot be read.
+    """
+    names = {each.instrument for each in plan.steps if each.kind == "consent"}
+    told = []
+    for name in sorted(names):
+        empty = unfilled(load_instrument(name, plan.language, folder))
+        if empty:
+            file = f"{folder}/texts/{plan.language}.yaml"
+            left = ", ".join(empty)
+            told.append(f"{name} has blanks: {left}; fill them in {file}")
+    return told
 
 
 def _line(entry: Mapping[str, Any]) -> str:  # Any: as YAML gives it back

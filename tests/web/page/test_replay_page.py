@@ -72,6 +72,18 @@ def test_it_plays_between_rows_and_stops_at_the_end(page: Page) -> None:
     until(page, "costeer.state === 'stopped' && costeer.time === 10")
 
 
+def test_nothing_is_shown_as_a_gain_where_nothing_guides(page: Page) -> None:
+    shown = run(
+        page,
+        "frames.js",
+        "const names = ['haptic_gain', 'strength_factor'];"
+        "const columns = new m.Columns(names, []);"
+        "return [0, 0.4].map((s) => columns.shown([0.8, s], 'haptic_gain'));",
+    )
+    assert math.isnan(shown[0])
+    assert shown[1] == 0.8
+
+
 BUFFER = """
   const names = ['time', 'sent_time', 'lane'];
   return import('/js/frames.js').then(({Columns}) => {

@@ -155,3 +155,28 @@ def test_attempt_ends_at_the_end_of_the_course_and_at_a_collision(ended: str) ->
     drive.end = lambda *how: outcomes.append(how)  # type: ignore[method-assign,assignment]
     drive._hear(Marker("ended", ended))
     assert [how[0] for how in outcomes] == ([] if ended == "server" else [True])
+
+
+def test_drives_that_break_before_anybody_drives_are_not_begun_for_ever(
+    tmp_path: Path,
+) -> None:
+    (tmp_path / "plan.yaml").write_text(
+        "title: P\nsteps: [{kind: drive, condition: manual}]\n"
+    )
+    desk = Desk(Session(tmp_path), Devices())
+
+    class Lame:
+        state = "ended"
+
+        def __init__(self, broke: bool) -> None:
+            self.broke_unstarted = broke
+
+    def ended(broke: bool) -> str:
+        desk._drive = Lame(broke)  # type: ignore[assignment]
+        with desk.lock:
+            desk._forget_drive(Outcome(None, False, "the loop is gone", ()))
+        return desk.trouble
+
+    assert [ended(broke) for broke in (True, True, False, True, True)] == [""] * 5
+    assert ended(True) == "the loop is gone"
+    desk.close()

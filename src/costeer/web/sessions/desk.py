@@ -33,6 +33,10 @@ from costeer.web.sessions.wording import Wording
 # Any, in this file: of JSON.
 
 
+MOST_LAME = 3
+"""After so many drives that broke before anybody drove, someone must look."""
+
+
 class Desk:
     """The session as its pages see it.
 
@@ -53,6 +57,7 @@ class Desk:
         self._driven: tuple[str, str, int] | None = None
         self.criterion: LiveCriterion | None = None
         self._is_begun = False
+        self._num_lame = 0
         self.checked: list[dict[str, Any]] = []
         self.trouble = ""
         self.page_seen = -math.inf
@@ -316,6 +321,10 @@ class Desk:
         """No drive is on; one that could not start is not tried again and again."""
         if self._drive is not None and self._drive.state == FAILED:
             self.trouble = outcome.reason
+        is_lame = self._drive is not None and self._drive.broke_unstarted
+        self._num_lame = self._num_lame + 1 if is_lame else 0
+        if self._num_lame >= MOST_LAME:
+            self.trouble, self._num_lame = outcome.reason, 0
         self._driven = self._drive = None
         self._is_begun = False
         self._idle.notify_all()

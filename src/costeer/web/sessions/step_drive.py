@@ -101,7 +101,7 @@ class StepDrive:
         self.setup, self._record, self._options = setup, record, options
         self._ended = ended
         self._lock = threading.Lock()
-        self._is_ending = False
+        self._is_ending = self._has_broken = False
         self._frame: NDArray[np.float64] | None = None
         self.state = STARTING
         self.reason = ""
@@ -142,15 +142,25 @@ class StepDrive:
         if marker.kind == "ended" and marker.name in ("course", "collision"):
             self.end(True, "")
         elif marker.kind == "fault" and marker.name == Fault.LOOP_GONE.word:
-            self.end(False, Fault.LOOP_GONE.text)
+            self._break(Fault.LOOP_GONE)
         elif marker.kind == "lost" and marker.name == Loss.WATCHDOG.word:
-            self.end(False, Fault.UNWATCHED.text)  # nobody drives on without it
+            self._break(Fault.UNWATCHED)  # nobody drives on without it
         elif marker.kind == "lost":
             self._lost.append(marker.name)
         elif marker.kind in ("fault", "error"):
             self.reason = _words(marker)
         elif marker.kind in ("resumed", "started"):
             self.reason = ""
+
+    def _break(self, fault: Fault) -> None:
+        """End the attempt: a process without which nobody drives is gone."""
+        self._has_broken = not self._is_ending
+        self.end(False, fault.text)
+
+    @property
+    def broke_unstarted(self) -> bool:
+        """Whether its processes ended before anybody drove."""
+        return self._has_broken and self.seconds == 0.0
 
     @property
     def is_ending(self) -> bool:

@@ -34,6 +34,12 @@ export class Columns {
     return Number.isFinite(value) ? value : otherwise;
   }
 
+  /** As `value`, but no gain where nothing assists: what fades there gives no torque. */
+  shown(frame, name) {
+    const isUnassisted = this.value(frame, "strength_factor") === 0;
+    return name === "haptic_gain" && isUnassisted ? Number.NaN : this.value(frame, name);
+  }
+
   /** The frame as an object by names. */
   named(frame) {
     return Object.fromEntries(this.names.map((name, place) => [name, frame[place]]));

@@ -34,7 +34,7 @@ export class Strip {
     if (time < newest) this.clear();
     else if (time - newest < SPACING * 0.9) return;
     this.times.push(time);
-    for (const name of DRAWN) this.series[name].push(drawable(columns.value(frame, name)));
+    for (const name of DRAWN) this.series[name].push(drawable(columns.shown(frame, name)));
     const old = this.times.findIndex((one) => one >= time - SPAN - 1);
     if (old > 60) for (const list of [this.times, ...Object.values(this.series)]) list.splice(0, old);
   }

@@ -18,7 +18,7 @@ const CHARTS = [
     { column: "driver_torque", factor: 1, label: "driver" },
     { column: "applied_torque", factor: 1, label: "guidance" },
   ] },
-  { name: "haptic gain", unit: "", digits: 2, limits: [-0.03, 1.03],
+  { name: "haptic gain", unit: "", digits: 2, limits: [-0.03, 1.03], none: "no guidance",
     signals: [{ column: "haptic_gain", factor: 1 }] },
   { name: "speed", unit: "km/h", digits: 0, around: 5,
     signals: [{ column: "longitudinal_velocity", factor: 3.6 }] },
@@ -93,7 +93,7 @@ export class Signals {
     else if (time - newest < SPACING * 0.9) return;
     this.times.push(time);
     SIGNALS.forEach(({ column, factor }, n) => {
-      const value = this.columns.value(frame, column) * factor;
+      const value = this.columns.shown(frame, column) * factor;
       this.series[n].push(Number.isFinite(value) ? value : null);
     });
     const old = this.times.findIndex((one) => one >= time - SPAN - 1);
@@ -198,9 +198,10 @@ export class Signals {
     const hovered = this.plots?.[0].cursor.idx;
     const place = hovered ?? this.times.length - 1;
     let signal = 0;
-    CHARTS.forEach(({ signals, digits }, n) => signals.forEach(({ label }, k) => {
+    CHARTS.forEach(({ signals, digits, none }, n) => signals.forEach(({ label }, k) => {
       const value = this.series[signal++][place] ?? Number.NaN;
-      const text = shownNumber(value, digits);
+      const isNone = none && place >= 0 && !Number.isFinite(value);
+      const text = isNone ? none : shownNumber(value, digits);
       this.values[n][k].replaceChildren(text, make("small", {}, label ? ` ${label}` : ""));
     }));
   }
