@@ -171,9 +171,7 @@ def kinds_of(fleet: FleetParameters) -> list[CarKind]:
 OBSTACLE = Scenario(
     "beside",
     road=Road(length=300.0),
-    actors=(
-        Actor("box", "obstacle", 0, 1.3, appears=When(place=150.0), headway=0.6),
-    ),
+    actors=(Actor("box", "obstacle", 0, 1.3, appears=When(place=150.0), headway=0.6),),
 )
 """Its left side is 1.325 m to the right of the left lane's centre."""
 
@@ -212,8 +210,6 @@ def test_a_lane_that_an_actor_needs_cannot_be_set_away() -> None:
 
 def test_a_record_says_what_the_other_cars_are() -> None:
     cars = simulate_trial(
-        TrialSetup(
-            condition="manual", intention="off", length=300.0, scenario=OBSTACLE
-        )
+        TrialSetup(condition="manual", intention="off", length=300.0, scenario=OBSTACLE)
     ).metadata["other_cars"]
     assert cars == [{"kind": "obstacle", "length": 1.0, "width": 1.75}]

@@ -351,9 +351,7 @@ def loop_parameters(setup: TrialSetup) -> LoopParameters[Any]:
     if (parameters.car, parameters.road) != (car, around.road):
         draw = draw._replace(car=parameters.car)
         fleet = fleet_on(scenario, draw, parameters.road)
-        world, parameters = (
-            each._replace(fleet=fleet) for each in (world, parameters)
-        )
+        world, parameters = (each._replace(fleet=fleet) for each in (world, parameters))
     if driven is chosen:
         return parameters
     # Manual driving has no parameters of a method from outside; the names are right.

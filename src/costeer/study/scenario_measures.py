@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from costeer.records.cars import CAR_COLUMN
 from costeer.scenarios.definition import Zone
 from costeer.study.crossings import within
 from costeer.study.curves import angle_beyond_curve
