@@ -191,3 +191,24 @@ def test_report_holds_tables_figures_and_records_that_replay(tmp_path: Path) -> 
     early = [row.collided for row in rows if row.time_to_collision == 1.5]
     late = [row.collided for row in rows if row.time_to_collision == 4.0]
     assert sum(early) > 2 * sum(late)
+
+
+KEEPING = str(Path(__file__).parents[2] / "examples/methods/pi_keeping.py")
+
+
+def test_a_method_of_a_file_has_its_name_and_what_it_never_comes_to(
+    tmp_path: Path,
+) -> None:
+    settings = Settings(1, 1, ("strong-normal",), KEEPING)
+    prepare(tmp_path / "e", settings)
+    gain = math.nan  # it has none
+    row = outcome(made_up(haptic_gain=np.full(480, gain)))
+    rows = [row._replace(meant_situation=number) for number in SITUATIONS]
+    text = write_report(tmp_path / "e", settings, rows).read_text("utf-8")
+    assert "method pi-keeping 1" in text
+    assert KEEPING not in text
+    assert "No drive came to (2), (3), (4)" in text
+    every = [r._replace(situation=r.meant_situation) for r in rows]
+    assert "No drive came" not in write_report(
+        tmp_path / "e", settings, every
+    ).read_text("utf-8")

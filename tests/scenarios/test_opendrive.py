@@ -159,7 +159,13 @@ REFUSED = [
         6,
         "length of <geometry> is missing",
     ),
-    (road(straight(1e9)), 4, "at most 200 are read"),
+    (road(straight(1e9)), 6, "length of <geometry> is '1000000000.0'; give a number"),
+    (road(straight(1e7)), 4, "at most 200 are read"),
+    (
+        road(straight(), TWO.replace('c="0" d="0"', 'c="0" d="1"')),
+        4,
+        "its lanes are 6.25e+07 m long",
+    ),
     (road(straight(), section(right=lane(-1))), 4, "1 lanes are driven on"),
     (
         road(straight(), section(right=lane(-1) + lane(-2, 3, "median") + lane(-3))),

@@ -90,6 +90,17 @@ WRONG = [
     ("kind: gust", "kind: gsut", 19, "did you mean gust"),
     ("end: 900", "end: 300", 21, "from 400 to 300 m"),
     ("end: 900", "ende: 900", 21, "did you mean end"),
+    ("speed: 80 km/h", "speed: 80 km/h\nspeed: 9", 3, "line 3: speed stands twice"),
+    ("  lanes: 2", "\tlanes: 2", 5, "a tab indents this line"),
+    ("  lanes: 2", "  <<: {lanes: 2}", 5, "<< is not read"),
+    ("name: bend", "name: !!python/name:os.system", 1, "tags (!!...) are not read"),
+    ("zones:", "---\nzones:", 20, "a second document"),
+    ("name: bend", "name: bend: er", 1, "a colon too many"),
+    ("name: bend", "name: be\0nd", 1, "a control character"),
+    ("name: bend", 'name: bend\nabout: "a\\x07b"', 2, "control characters"),
+    ("  lanes: 2", "  lanes:", 5, "lanes has no value"),
+    ("length: 3000", "length: 3e3", 4, "a number without an exponent"),
+    ("name: bend", "name: &n bend\nabout: *n", 2, "references are not read"),
 ]
 
 
@@ -135,6 +146,17 @@ def test_what_cannot_be_is_refused_with_its_line(
     with pytest.raises(ValueError, match=f"line {line}[:,]") as refused:
         parsed(SOUND.replace(right, wrong, 1), "bend.yaml")
     assert told in str(refused.value)
+
+
+def test_bytes_that_are_no_utf_8_are_refused_with_their_line() -> None:
+    with pytest.raises(ValueError, match=r"^x.yaml, line 2: byte 0xff is no UTF-8"):
+        parsed(b"name: x\nabout: \xff\n", "x.yaml")
+
+
+def test_too_many_actors_are_counted() -> None:
+    actors = "".join(f"  - {{name: a{k}, at: {50 * k}}}\n" for k in range(1, 43))
+    with pytest.raises(ValueError, match=r"x.yaml, line 43: 42 actors; give at most"):
+        parsed(f"name: x\nactors:\n{actors}", "x.yaml")
 
 
 def test_cars_in_one_place_are_refused() -> None:

@@ -14,6 +14,7 @@ from costeer.emergencies.figures import behaviour, collisions, conditions_of
 from costeer.emergencies.outcome import EmergencyRow
 from costeer.emergencies.run import WORST, worst_name, worst_of, write_outcome
 from costeer.methods.conditions import MANUAL
+from costeer.methods.registry import method_named
 from costeer.pages.frame import Section, picture, render_page, write_figures
 from costeer.pages.style import styled
 from costeer.pages.tables import Table, versions_table
@@ -86,7 +87,29 @@ def _looked_at(settings: Settings, rows: Rows) -> list[str]:
         f"{settings.drivers} virtual drivers at {speeds} km/h, {len(rows)} drives.",
         f"An obstacle half a lane wide appeared {times} s ahead, in the lane driven in "
         "or changed to; in half of the drives a car drove in the other lane.",
-        f"Conditions: {', '.join(conditions_of(rows))}; method {settings.method}.",
+        f"Conditions: {', '.join(conditions_of(rows))}; method {_method(settings)}.",
+        *_never_reached(rows),
+    ]
+
+
+def _method(settings: Settings) -> str:
+    """Name and version of the method, wherever its file is."""
+    method = method_named(settings.method)
+    return f"{method.name} {method.version}"
+
+
+def _never_reached(rows: Rows) -> list[str]:
+    """What the method makes of no drive: it may start no lane change, or not judge."""
+    assisted = [row for row in rows if row.situation]
+    lacking = sorted(
+        {row.meant_situation for row in assisted} - {row.situation for row in assisted}
+    )
+    if not lacking:
+        return []
+    told = ", ".join(f"({number})" for number in lacking)
+    return [
+        f"No drive came to {told}: the method starts no lane change there, or gives no "
+        "verdict. Rows of such a situation show how drivers fared without."
     ]
 
 

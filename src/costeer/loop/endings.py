@@ -20,8 +20,8 @@ STANDS = 0.1
 """A car that is slower stands [m/s]. Source: assumed."""
 
 STOPPED_AFTER = 30.0
-"""A trial ends when its car has stood so long [s]. Source: assumed, longer than cars
-that queue need to get past an obstacle one after the other."""
+"""A trial ends when its car has stood for so long [s]. Source: assumed, longer than
+those that queue need to get past an obstacle one after the other."""
 
 _PLACE = ROW_COLUMNS.index("longitudinal_position")
 _SPEED = ROW_COLUMNS.index("longitudinal_velocity")

@@ -164,7 +164,7 @@ _CONTACT = ROW_COLUMNS.index("contact")
 def _until_the_end(
     positions: NDArray[np.float64], rows: NDArray[np.float64], length: Real
 ) -> NDArray[np.float64]:
-    """The rows up to the end of the road, a collision, or standing for good."""
+    """The rows until road, a collision or a car that stands for good end the trial."""
     ends = (positions >= length) | (rows[:, _CONTACT] >= BARRIER) | stopped_rows(rows)
     last = np.flatnonzero(ends)
     return rows[: last[0] + 1] if last.size else rows

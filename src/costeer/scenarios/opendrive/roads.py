@@ -31,6 +31,9 @@ from costeer.scenarios.opendrive.tree import Element, read_tree
 
 Numbers = NDArray[np.float64]
 
+LONGEST_ROAD = 210_000.0
+"""Along the lanes that are read [m]: who swings out by kilometres is no lane."""
+
 MOST_ERROR = 0.1
 """Distance from the file's line within `fitting.STRETCH` above which it is told [m]."""
 
@@ -114,6 +117,9 @@ def read_road(path: Path, wanted: str = "", against: bool = False) -> Imported:
     if not driven.forward:
         parts = [(x[::-1], y[::-1]) for x, y in reversed(parts)]
     line = line_through(parts)
+    if not line.length <= LONGEST_ROAD:
+        told = f"its lanes are {line.length:.3g} m long; at most {LONGEST_ROAD:g} are"
+        raise ValueError(f"{road.where}: {told} read")
     fit = fitted(line)
     widths = np.concatenate([each.widths for each in strips], axis=1)
     limit, limit_notes = _limit(road)

@@ -16,6 +16,9 @@ _LARGEST = 60_000_000
 _MOST_ELEMENTS = 1_000_000
 _DEEPEST = 60
 
+_FARTHEST = 1e8
+"""No number of a road is larger [m]: twice around the earth."""
+
 _NOT_OPENED = ("objects", "signals", "surface", "railroad", "userData", "junction")
 """Elements of which nothing inside is needed."""
 
@@ -74,9 +77,10 @@ class Element(NamedTuple):
             value = float(text or "")
         except ValueError:
             value = math.nan
-        if not math.isfinite(value):
+        if not abs(value) <= _FARTHEST:
             told = "is missing" if text is None else f"is {text[:40]!r}"
-            raise ValueError(f"{self.where}: {name} of <{self.name}> {told}; a number")
+            told = f"{name} of <{self.name}> {told}; give a number up to {_FARTHEST:g}"
+            raise ValueError(f"{self.where}: {told}")
         return value
 
 
