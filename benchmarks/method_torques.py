@@ -37,9 +37,9 @@ from costeer.pages.style import (
     svg_text,
 )
 
-PARTICIPANT = 3
-LENGTH = 1100.0
-BEFORE, AFTER = 2.0, 9.0
+PARTICIPANT = 10
+LENGTH = 1400.0
+BEFORE, AFTER = 1.0, 11.0
 """Shown before and after the driver begins [s]."""
 
 COLUMNS = 3
