@@ -29,6 +29,7 @@ class Source(NamedTuple):
         data: Folder of the sets; None for that of COSTEER_DATA.
         resample: Bring tables of another rate to 60 Hz.
         told: How tables are to be read.
+        cluster: Whose workers simulate; empty for threads.
     """
 
     files: list[Path]
@@ -38,6 +39,7 @@ class Source(NamedTuple):
     data: Path | None
     resample: bool = False
     told: Told = AS_FOUND
+    cluster: str = ""
 
 
 class Chosen(NamedTuple):
@@ -102,6 +104,8 @@ def check_source(source: Source) -> None:
         )
     if source.seed is not None and source.simulate is None:
         raise ValueError("--seed is of simulated drivers; add --simulate N")
+    if source.cluster and source.simulate is None:
+        raise ValueError("--cluster is for simulated drivers; add --simulate N")
     if source.data is not None and source.dataset is None:
         raise ValueError("--data is the folder of --dataset; add --dataset NAME")
     if source.resample and not source.files:
@@ -136,13 +140,16 @@ def read_source(source: Source) -> list[Recording]:
         OSError: If a file cannot be read.
     """
     if source.simulate is not None:
+        from costeer.scale.cluster import workers
         from costeer.training.simulation import FIRST_UNSEEN, simulate_recordings
 
-        jobs = os.cpu_count() or 1
         seed = 1 if source.seed is None else source.seed
-        with progress("simulated drivers", source.simulate) as advance:
+        with (
+            workers(None, source.cluster) as pool,
+            progress("simulated drivers", source.simulate) as advance,
+        ):
             return simulate_recordings(
-                source.simulate, seed, jobs, advance, FIRST_UNSEEN
+                source.simulate, seed, pool, advance, FIRST_UNSEEN
             )
     if source.dataset is not None:
         from costeer.training.datasets.catalogue import read_dataset
