@@ -10,6 +10,8 @@ import pytest
 
 from costeer.cli import main
 from costeer.cli.trial_progress import speedometer, study_progress
+from costeer.loop.scenario import TrialSetup
+from costeer.records.record import TrialRecord
 from costeer.study import run
 from costeer.study.design import Trial
 from costeer.study.trial_tables import TrialRows
@@ -98,6 +100,10 @@ def test_too_few_participants_for_the_square_are_told(
         (["--length", "inf"], "length is inf"),
         (["--seed", "-1"], "seed is -1"),
         (["--jobs", "0"], "jobs is 0"),
+        (["--cluster", "mars"], "cluster 'mars' is not known; give local:N"),
+        (["--cluster", "local:2", "--jobs", "2"], "all workers of a cluster work"),
+        (["--shard", "3/2"], "shard 3/2: the first number is 1 to 2"),
+        (["--shard", "slurm"], "needs SLURM_ARRAY_TASK_ID"),
         (["--car", "lorry"], "car 'lorry' is not known"),
     ],
 )
@@ -114,6 +120,44 @@ def test_a_wrong_option_is_refused(
     assert len(said) == 1
     assert message in said[0]
     assert not out.exists()
+
+
+@pytest.mark.usefixtures("_fake")
+def test_shards_end_with_how_to_merge_them(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    words = ["study", "--out", str(tmp_path / "study"), *OPTIONS]
+    for shard in ("1/2", "2/2"):
+        assert main([*words, "--shard", shard, "--no-records"]) == 0
+        told = capsys.readouterr()
+        assert "1 trials simulated, 0 were there" in told.out
+        assert f"shard {shard} is done; when all are: costeer merge" in told.err
+    assert main(["merge", str(tmp_path / "study"), "--no-report"]) == 0
+    whole = ["study", "--out", str(tmp_path / "whole"), *OPTIONS, "--no-report"]
+    assert main(whole) == 0
+    shards, whole_study = contents(tmp_path / "study"), contents(tmp_path / "whole")
+    assert shards["trials.csv"] == whole_study["trials.csv"]
+
+
+def test_a_study_with_a_failed_trial_ends_with_1(
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    def failing(setup: TrialSetup) -> TrialRecord:
+        if setup.condition == "manual":
+            raise ValueError("the road ends")
+        return made_up(setup)
+
+    monkeypatch.setattr(run, "run_study", partial(run.run_study, simulate=failing))
+    words = ["study", "--out", str(tmp_path), *OPTIONS, "--no-report"]
+    assert main(words) == 1
+    told = capsys.readouterr()
+    assert "1 trials simulated, 0 were there" in told.out
+    assert (
+        "1 of 2 trials failed: participant 1, manual: the road ends; the same command "
+        "tries them again"
+    ) in told.err
 
 
 def test_a_file_as_folder_is_refused(

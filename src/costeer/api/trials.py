@@ -25,10 +25,11 @@ from costeer.methods.conditions import CONDITION_NAMES, parse_conditions
 from costeer.methods.registry import AnyMethod
 from costeer.plant.parameters import CarParameters
 from costeer.records.columns import TrialRecord
+from costeer.scale.shard import WHOLE, parse_shard
 from costeer.scenarios.definition import Scenario
 from costeer.scenarios.reading import chosen
 from costeer.study.configuration import StudySettings
-from costeer.study.run import StudyOutcome, full_report, run_study
+from costeer.study.run import Scale, StudyOutcome, full_report, run_study
 
 if TYPE_CHECKING:
     from pandas import DataFrame
@@ -162,6 +163,9 @@ def study(
     parameters: Mapping[str, float] | None = None,
     jobs: int | None = None,
     report: bool = True,
+    cluster: str = "",
+    records: bool = True,
+    shard: str = "",
 ) -> StudyOutcome:
     """Run the experiment in a folder, or finish one that was begun there.
 
@@ -189,6 +193,11 @@ def study(
         jobs: Trials at the same time; as many as processors if None. The results do
             not depend on it.
         report: Tests, figures and `report.html` after the tables.
+        cluster: "local:N" for N processes here, or the address of a Dask or Ray
+            scheduler; docs/scale.md.
+        records: Whether trial records are kept, or their measures alone.
+        shard: Part of the trials, "I/N"; `costeer.study.merge.merge_study` puts the
+            parts together.
 
     Raises:
         ValueError: If a setting cannot be, or the folder is another study's.
@@ -224,7 +233,9 @@ def study(
     }
     settings = StudySettings(**{name: given[name] for name in StudySettings._fields})
     made = full_report if report else None
-    return run_study(os.fspath(out), settings, jobs=jobs, report=made)
+    part = parse_shard(shard, os.environ) if shard else WHOLE
+    scale = Scale(cluster, records, part)
+    return run_study(os.fspath(out), settings, jobs=jobs, report=made, scale=scale)
 
 
 def _conditions(given: str | Iterable[str]) -> tuple[str, ...]:

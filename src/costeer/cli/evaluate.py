@@ -11,6 +11,7 @@ import typer
 
 from costeer.cli.console import note
 from costeer.cli.reading import AS_FOUND, Told, reads_tables
+from costeer.cli.scaled import Cluster
 from costeer.cli.validate import at_least, fraction, in_range, positive
 
 if TYPE_CHECKING:
@@ -132,6 +133,7 @@ def evaluate(
         Path | None, typer.Option(help="Folder of report, figures and tables.")
     ] = None,
     json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
+    cluster: Cluster = "",
     told: Told = AS_FOUND,
 ) -> None:
     """Judge the intention network on records or a table.
@@ -154,7 +156,7 @@ def evaluate(
     from costeer.training.evaluate import DEFAULTS
 
     source = parts.Source(
-        files or [], simulate, seed, dataset, data, resample, told, scenario
+        files or [], simulate, seed, dataset, data, resample, told, scenario, cluster
     )
     parts.check_source(source)
     chosen = parts.Chosen(predictor, weights, compare, tuple(without or ()), ablations)

@@ -31,6 +31,7 @@ class Source(NamedTuple):
         told: How tables are to be read.
         scenario: That simulated drivers drive in; None for the published road at
             several speeds.
+        cluster: Whose workers simulate; empty for threads.
     """
 
     files: list[Path]
@@ -41,6 +42,7 @@ class Source(NamedTuple):
     resample: bool = False
     told: Told = AS_FOUND
     scenario: str | None = None
+    cluster: str = ""
 
 
 class Chosen(NamedTuple):
@@ -110,6 +112,8 @@ def check_source(source: Source) -> None:
         from costeer.scenarios.reading import scenario_named
 
         scenario_named(source.scenario)
+    if source.cluster and source.simulate is None:
+        raise ValueError("--cluster is for simulated drivers; add --simulate N")
     if source.data is not None and source.dataset is None:
         raise ValueError("--data is the folder of --dataset; add --dataset NAME")
     if source.resample and not source.files:
@@ -144,13 +148,16 @@ def read_source(source: Source) -> list[Recording]:
         OSError: If a file cannot be read.
     """
     if source.simulate is not None:
+        from costeer.scale.cluster import workers
         from costeer.training.simulation import FIRST_UNSEEN, simulate_recordings
 
-        jobs = os.cpu_count() or 1
         seed = 1 if source.seed is None else source.seed
-        with progress("simulated drivers", source.simulate) as advance:
+        with (
+            workers(None, source.cluster) as pool,
+            progress("simulated drivers", source.simulate) as advance,
+        ):
             return simulate_recordings(
-                source.simulate, seed, jobs, advance, FIRST_UNSEEN, source.scenario
+                source.simulate, seed, pool, advance, FIRST_UNSEEN, source.scenario
             )
     if source.dataset is not None:
         from costeer.training.datasets.catalogue import read_dataset

@@ -8,10 +8,10 @@ the frozen population, with numbers that no study has.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from concurrent.futures import ThreadPoolExecutor
 
 from costeer.loop.scenario import TrialSetup
 from costeer.loop.trial import simulate_trial
+from costeer.scale.jobs import JobsStoppedError, Pool, run_jobs
 from costeer.scenarios.definition import Scenario
 from costeer.scenarios.reading import chosen
 from costeer.training.recordings import Recording, recordings_of
@@ -58,30 +58,40 @@ def manual_setup(participant: int, seed: int, place: int, trial: int = 0) -> Tri
 
 def simulate_setups(
     setups: Sequence[TrialSetup],
-    jobs: int = 1,
+    jobs: Pool = 1,
     progress: Callable[[int], None] | None = None,
 ) -> list[Recording]:
     """Recordings of manual trials, in their order.
 
     Args:
         setups: Of the trials.
-        jobs: Threads.
+        jobs: Threads, or the workers of a cluster.
         progress: Told after each trial.
+
+    Raises:
+        BaseException: What stopped a trial, as the trial raised it.
     """
-    found: list[Recording] = []
-    with ThreadPoolExecutor(jobs) as pool:
-        for setup, record in zip(setups, pool.map(simulate_trial, setups), strict=True):
-            name = f"simulated driver {setup.participant} {setup.condition}"
-            found += recordings_of(record, name)
-            if progress:
-                progress(1)
-    return found
+
+    def told(_: list[Recording]) -> None:
+        if progress:
+            progress(1)
+
+    try:
+        found = run_jobs(_recorded, setups, jobs, told)
+    except JobsStoppedError as stopped:
+        raise (stopped.__cause__ or stopped) from None
+    return [recording for each in found for recording in each]
+
+
+def _recorded(setup: TrialSetup) -> list[Recording]:
+    name = f"simulated driver {setup.participant} {setup.condition}"
+    return recordings_of(simulate_trial(setup), name)
 
 
 def simulate_recordings(
     num_drivers: int,
     seed: int,
-    jobs: int = 1,
+    jobs: Pool = 1,
     progress: Callable[[int], None] | None = None,
     first: int = FIRST_PARTICIPANT,
     scenario: str | Scenario | None = None,
@@ -91,7 +101,7 @@ def simulate_recordings(
     Args:
         num_drivers: How many.
         seed: Of the population and of all noise.
-        jobs: Threads.
+        jobs: Threads, or the workers of a cluster.
         progress: Told after each trial.
         first: Number of the first driver: those from `FIRST_PARTICIPANT` on are to
             learn from, those from `FIRST_UNSEEN` on are in no training.

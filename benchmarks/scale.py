@@ -1,0 +1,186 @@
+"""Many drivers: memory, killed workers, and the time a thousand of them take.
+
+    python -m benchmarks.scale memory [DRIVERS ...]
+    python -m benchmarks.scale kills [KILLS]
+    python -m benchmarks.scale whole [DRIVERS]
+
+`memory` runs the study without records for 50 and 200 drivers (one overtaking event,
+two conditions, scripted intention) and prints the largest memory of the process, which
+must not grow with their number. `kills` kills a worker of `local:2` at 20 random
+moments and compares every byte with a study that nobody disturbed; exit code 1 if one
+differs.
+`whole` is the study of the paper with 1,000 drivers: 7 conditions, 8 km, the network;
+fewer tell what a driver takes. Edit nothing meanwhile: workers would be refused.
+"""
+
+from __future__ import annotations
+
+import os
+import platform
+import random
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from costeer.scale.cluster import workers
+from costeer.study import run as study_run
+from costeer.study.configuration import StudySettings
+from costeer.study.run import Scale, run_study
+from costeer.study.trials import TrialDone
+from tests.study.fakes import contents
+
+SEED = 1
+SHORT = ("--conditions", "manual,weak-gentle", "--intention", "scripted")
+SHORT += ("--length", "1800")
+TRIALS_A_KILL = 10
+
+CHILD = """
+import resource, sys
+from costeer.cli import main
+code = main(sys.argv[1:])
+print("peak", resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)
+sys.exit(code)
+"""
+"""Runs a command and tells the largest memory it had [kB]."""
+
+
+class Ran(NamedTuple):
+    """A study that was run in a process of its own.
+
+    Attributes:
+        seconds: From start to end [s].
+        peak: Largest memory [MB].
+        told: What it printed.
+    """
+
+    seconds: float
+    peak: float
+    told: list[str]
+
+
+def ran(out: Path, drivers: int, *words: str) -> Ran:
+    """Run a study without records or report."""
+    command = ["study", "--out", str(out), "--participants", str(drivers)]
+    command += ["--no-records", "--no-report", *words]
+    begun = time.monotonic()
+    done = subprocess.run(
+        [sys.executable, "-c", CHILD, *command],
+        stdout=subprocess.PIPE,
+        text=True,
+        check=True,
+    )
+    seconds = time.monotonic() - begun
+    *told, last = done.stdout.splitlines()
+    return Ran(seconds, int(last.split()[1]) / 1024.0, told)
+
+
+def memory(numbers: list[int]) -> int:
+    """Print the largest memory for each number of drivers."""
+    with tempfile.TemporaryDirectory() as folder:
+        ran(Path(folder) / "first", 1, *SHORT)  # compiles
+        for number in numbers:
+            found = ran(Path(folder) / str(number), number, *SHORT)
+            print(
+                f"{number} drivers, {2 * number} trials: {found.seconds:.0f} s, "
+                f"peak {found.peak:.0f} MB",
+                flush=True,
+            )
+    return 0
+
+
+def worker_pids(engine: Any) -> list[int]:  # Any: of Dask
+    """Processes of the workers that are up."""
+    nannies = engine.client.cluster.workers.values()
+    up = [each for each in nannies if each.status.name == "running"]
+    return [each.process.pid for each in up if each.process.is_alive()]
+
+
+def kills(number: int) -> int:
+    """Kill workers, and say whether a byte is another."""
+    settings = StudySettings(
+        participants=max(2, number * TRIALS_A_KILL // 2),
+        conditions=("manual", "weak-gentle"),
+        intention="scripted",
+        length=600.0,
+    )
+    num_trials = 2 * settings.participants
+    draw, seen, killed = random.Random(SEED), 0, 0
+    moments = set(draw.sample(range(1, num_trials - TRIALS_A_KILL), number))
+    with (
+        tempfile.TemporaryDirectory() as folder,
+        workers(None, "local:2") as engine,
+    ):
+
+        @contextmanager
+        def given(*_: object) -> Iterator[Any]:
+            yield engine
+
+        def kill_some(_: TrialDone) -> None:
+            nonlocal seen, killed
+            seen += 1
+            pids = worker_pids(engine)
+            if seen in moments and pids:
+                os.kill(draw.choice(pids), signal.SIGKILL)
+                killed += 1
+
+        whole, out = Path(folder) / "whole", Path(folder) / "killed"
+        run_study(whole, settings, report=None)
+        usual, study_run.workers = study_run.workers, given
+        try:
+            run_study(
+                out,
+                settings,
+                report=None,
+                progress=kill_some,
+                scale=Scale(cluster="local:2"),
+            )
+        finally:
+            study_run.workers = usual
+        one, two = contents(whole), contents(out)
+    changed = [
+        name for name in one.keys() | two.keys() if one.get(name) != two.get(name)
+    ]
+    print(
+        f"{killed} kills in {num_trials} trials: {len(one)} files, {len(changed)} of "
+        f"them lost or with another byte"
+    )
+    return 1 if changed or killed < number else 0
+
+
+def whole(drivers: int) -> int:
+    """Print how long the study of the paper takes with so many drivers."""
+    with tempfile.TemporaryDirectory() as folder:
+        found = ran(Path(folder) / "study", drivers)
+    print("\n".join(found.told[:-1]))
+    print(
+        f"{drivers} drivers, {7 * drivers} trials of 8 km: {found.seconds:.0f} s, "
+        f"{found.seconds / drivers:.2f} s a driver, peak {found.peak:.0f} MB"
+    )
+    return 0
+
+
+def main(words: list[str]) -> int:
+    """Run what the words name."""
+    kind = words[0] if words else ""
+    numbers = [int(word) for word in words[1:]]
+    print(
+        f"{platform.machine()}, {os.cpu_count()} cores, load {os.getloadavg()[0]:.1f}"
+    )
+    if kind == "memory":
+        return memory(numbers or [50, 200])
+    if kind == "kills":
+        return kills(*(numbers or [20]))
+    if kind == "whole":
+        return whole(*(numbers or [1000]))
+    print(__doc__)
+    return 2
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
