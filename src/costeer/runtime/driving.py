@@ -13,7 +13,6 @@ from collections.abc import Callable
 from contextlib import suppress
 from typing import Any
 
-from costeer.devices.head.source import STALE_AFTER
 from costeer.devices.wheels.interface import EFFECT_LIFE, WheelLost
 from costeer.devices.wheels.registry import open_wheel
 from costeer.plant.road import adjacent_side, lane_centre
@@ -30,8 +29,9 @@ from costeer.runtime.patience import (
     PAGE_PATIENCE,
     SERVER_PATIENCE,
     STOP_PATIENCE,
-    VERDICT_PATIENCE,
     WHEEL_PATIENCE,
+    newest_verdict,
+    sees_head,
 )
 from costeer.runtime.setup import (
     DriveSetup,
@@ -156,25 +156,13 @@ class Driving:
             accelerator=box.get("accelerator"),
             brake=box.get("brake"),
             head_yaw=box.get("head_yaw"),
-            head_valid=self._sees_head(now),
-            crossing_probability=self._verdict(),
+            head_valid=sees_head(box, now),
+            crossing_probability=newest_verdict(box, self._frames.written)
+            if self._setup.intention == "network"
+            else math.nan,
             requested=self._requests(),
             leader_uniform=float(self._draws[self._leaders % len(self._draws)]),
         )
-
-    def _sees_head(self, now: float) -> bool:
-        """Whether the head was seen lately."""
-        age = now - self._mailbox.get("head_time")
-        return self._mailbox.get("head_valid") > 0.5 and age <= STALE_AFTER
-
-    def _verdict(self) -> float:
-        """The network's newest verdict, NaN if it is too old [-]."""
-        if self._setup.intention != "network":
-            return math.nan
-        age = self._frames.written - self._mailbox.get("verdict_row")
-        if age > VERDICT_PATIENCE:
-            return math.nan
-        return self._mailbox.get("crossing_probability")
 
     def _requests(self) -> bool:
         """Whether the indicator asks for a lane change to where there is a lane."""
@@ -346,10 +334,9 @@ class Driving:
         if self._bay.is_empty:
             self._bay.find()
             self._stepped_at = NEVER
-        if self._is_unwatched(self._clock()):
-            raise ValueError(Fault.WATCHDOG_STILL.text)
-        if not self._fault.can_resume:
-            raise ValueError(self._fault.text)
+        still = self._is_unwatched(self._clock())
+        if still or not self._fault.can_resume:
+            raise ValueError((Fault.WATCHDOG_STILL if still else self._fault).text)
         self._cabin.check_wheel()
 
     def _begin(self, kind: Kind) -> None:
@@ -363,8 +350,8 @@ class Driving:
         self._cabin.meet_wheel()
         self._run_state = RunState.RUNNING
         stood = round(self._clock() - self._paused_at, 3)
-        is_new = kind == "started"
-        self._mark(Marker(kind) if is_new else Marker(kind, after=stood, unit="s"))
+        marker = Marker(kind, after=stood, unit="s")
+        self._mark(Marker(kind) if kind == "started" else marker)
 
     def _forget_stall(self) -> None:
         """The watchdog has told the wheel to let go: it is to be opened anew, once."""
@@ -375,7 +362,7 @@ class Driving:
             self._fault = Fault.WHEEL_LOST
 
     def _do_leave(self) -> None:
-        if self._run_state == RunState.RUNNING and self._setup.needs_page:
+        if self.is_running and self._setup.needs_page:
             self._break_off(Fault.PAGE_LOST)
 
     def _do_pause(self, why: str) -> None:
@@ -403,8 +390,8 @@ class Driving:
         if is_so:
             self._break_off(Fault.RECORD_STOPPED)
         elif self._fault == Fault.RECORD_STOPPED:
-            paused = self._run_state == RunState.PAUSED
-            self._fault = Fault.RECORD_MENDED if paused else Fault.NONE
+            is_paused = self._run_state == RunState.PAUSED
+            self._fault = Fault.RECORD_MENDED if is_paused else Fault.NONE
 
     def _do_indicator(self, side: float) -> None:
         self._indicator.put(float(side), self._time)
