@@ -20,9 +20,11 @@ def names(file: str) -> list[str]:
 
 def test_every_column_is_there_in_its_order() -> None:
     trial = list(trial_row(synthetic_record(length=1800.0), 1))
-    assert names("trials.csv") == [*trial, "tlx_raw", "tlx_weighted"]
-    assert names("lane_changes.csv") == list(LANE_CHANGE_COLUMNS)
-    assert names("triggers.csv") == list(TRIGGER_COLUMNS)
+    series = ["label", "scenario", "occasion"]  # of sessions only
+    workload = ["tlx_raw", "tlx_weighted"]
+    assert names("trials.csv") == [*trial, *workload, *series, "ended_by"]
+    assert names("lane_changes.csv") == [*LANE_CHANGE_COLUMNS, *series]
+    assert names("triggers.csv") == [*TRIGGER_COLUMNS, *series]
     assert names("pairs.csv") == list(PairRow._fields)
 
 

@@ -174,10 +174,8 @@ def _new(folder: Path, plan: Path | None) -> None:
         if is_file_name(name):
             (folder / name).parent.mkdir(parents=True, exist_ok=True)
             write_text(folder / name, scenario)
-    for told in scenario_notes(found, own):
-        note(f"costeer: {told}")
     write_text(target, text.decode("utf-8"))
-    for told in blank_notes(found, folder):
+    for told in (*scenario_notes(found, own), *blank_notes(found, folder)):
         note(f"costeer: {told}")
     even = balance(found, range(1, found.participants + 1)).is_even
     told = "balanced" if even else "not balanced over so many"

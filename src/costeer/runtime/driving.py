@@ -30,8 +30,9 @@ from costeer.runtime.patience import (
     SERVER_PATIENCE,
     STOP_PATIENCE,
     WHEEL_PATIENCE,
+    newest_verdict,
+    sees_head,
 )
-from costeer.runtime.senses import newest_verdict, sees_head
 from costeer.runtime.setup import (
     DriveSetup,
     drive_columns,
@@ -333,10 +334,9 @@ class Driving:
         if self._bay.is_empty:
             self._bay.find()
             self._stepped_at = NEVER
-        if self._is_unwatched(self._clock()):
-            raise ValueError(Fault.WATCHDOG_STILL.text)
-        if not self._fault.can_resume:
-            raise ValueError(self._fault.text)
+        still = self._is_unwatched(self._clock())
+        if still or not self._fault.can_resume:
+            raise ValueError((Fault.WATCHDOG_STILL if still else self._fault).text)
         self._cabin.check_wheel()
 
     def _begin(self, kind: Kind) -> None:
@@ -350,8 +350,8 @@ class Driving:
         self._cabin.meet_wheel()
         self._run_state = RunState.RUNNING
         stood = round(self._clock() - self._paused_at, 3)
-        is_new = kind == "started"
-        self._mark(Marker(kind) if is_new else Marker(kind, after=stood, unit="s"))
+        marker = Marker(kind, after=stood, unit="s")
+        self._mark(Marker(kind) if kind == "started" else marker)
 
     def _forget_stall(self) -> None:
         """The watchdog has told the wheel to let go: it is to be opened anew, once."""
@@ -362,7 +362,7 @@ class Driving:
             self._fault = Fault.WHEEL_LOST
 
     def _do_leave(self) -> None:
-        if self._run_state == RunState.RUNNING and self._setup.needs_page:
+        if self.is_running and self._setup.needs_page:
             self._break_off(Fault.PAGE_LOST)
 
     def _do_pause(self, why: str) -> None:
@@ -390,8 +390,8 @@ class Driving:
         if is_so:
             self._break_off(Fault.RECORD_STOPPED)
         elif self._fault == Fault.RECORD_STOPPED:
-            paused = self._run_state == RunState.PAUSED
-            self._fault = Fault.RECORD_MENDED if paused else Fault.NONE
+            is_paused = self._run_state == RunState.PAUSED
+            self._fault = Fault.RECORD_MENDED if is_paused else Fault.NONE
 
     def _do_indicator(self, side: float) -> None:
         self._indicator.put(float(side), self._time)

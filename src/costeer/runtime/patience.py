@@ -2,6 +2,11 @@
 
 from __future__ import annotations
 
+import math
+
+from costeer.devices.head.source import STALE_AFTER
+from costeer.runtime.shared import Mailbox
+
 PAGE_PATIENCE = 1.0
 """A drive pauses when no page has said a word for so long [s]."""
 
@@ -19,3 +24,15 @@ WATCHDOG_PATIENCE = 0.3
 
 STOP_PATIENCE = 0.4
 """The torque has faded out by then; the process ends anyhow [s]."""
+
+
+def sees_head(mailbox: Mailbox, now: float) -> bool:
+    """Whether the head was seen lately; `now` of the clock that all share [s]."""
+    age = now - mailbox.get("head_time")
+    return mailbox.get("head_valid") > 0.5 and age <= STALE_AFTER
+
+
+def newest_verdict(mailbox: Mailbox, written: int) -> float:
+    """The network's newest verdict, NaN if it is too many of the `written` rows old."""
+    is_old = written - mailbox.get("verdict_row") > VERDICT_PATIENCE
+    return math.nan if is_old else mailbox.get("crossing_probability")
