@@ -94,7 +94,7 @@ def test_a_lane_that_the_position_contradicts_is_noticed() -> None:
     assert any("lane and lateral_position contradict" in note for note in found)
 
 
-THREE = Lanes(width=3.0, count=3)
+THREE = Lanes(width=3.0, number=3)
 
 
 def on_three_lanes() -> dict[str, np.ndarray]:

@@ -33,11 +33,11 @@ class Lanes(NamedTuple):
 
     Attributes:
         width: Of each lane [m]. Source: the paper's simulator.
-        count: Of this direction [-]. Source: as above.
+        number: Of this direction [-]. Source: as above.
     """
 
     width: float = 3.5
-    count: int = 2
+    number: int = 2
 
 
 PAPERS = Lanes()
@@ -65,7 +65,7 @@ def lanes_of(metadata: Mapping[str, object]) -> Lanes:
     count = driven.get("num_lanes", said.get("lanes"))
     return Lanes(
         width=float(width) if _is_within(width, 0.5, _WIDEST) else PAPERS.width,
-        count=int(count) if _is_within(count, 1.0, _MOST) else PAPERS.count,
+        number=int(count) if _is_within(count, 1.0, _MOST) else PAPERS.number,
     )
 
 
@@ -202,16 +202,16 @@ def _lanes(known: Mapping[str, Series], lanes: Lanes) -> list[str]:
     if "lane" not in known:
         return []
     with np.errstate(invalid="ignore"):
-        from_left = np.clip(np.ceil(-position / lanes.width - 0.5), 0, lanes.count - 1)
-    wrong = np.isfinite(position) & np.isin(known["lane"], range(lanes.count))
-    wrong &= known["lane"] != lanes.count - 1 - from_left
+        from_left = np.clip(np.ceil(-position / lanes.width - 0.5), 0, lanes.number - 1)
+    wrong = np.isfinite(position) & np.isin(known["lane"], range(lanes.number))
+    wrong &= known["lane"] != lanes.number - 1 - from_left
     if wrong.sum() * 20 < wrong.size:
         return []
     return [
         f"lane and lateral_position contradict each other in {wrong.sum()} rows, first "
         f"in row {int(np.flatnonzero(wrong)[0])}: the position counts from the left "
         f"lane's centre, left positive, lanes from the right (0 right, "
-        f"{lanes.count - 1} left)"
+        f"{lanes.number - 1} left)"
     ]
 
 
@@ -229,7 +229,7 @@ def joined(columns: Columns, lanes: Lanes = PAPERS) -> dict[str, NDArray[Any]]:
     steps = np.diff(position, prepend=position[:1])
     jumps = np.where(np.abs(steps) > lanes.width / 2.0, steps, 0.0)
     jumped = np.round(jumps / lanes.width) * lanes.width
-    last = lanes.count - 1
+    last = lanes.number - 1
     first = np.ma.getdata(found["lane"])[0] if "lane" in found else last
     from_left = last - int(first) if first in range(last) else 0
     found["lateral_position"] = position - np.cumsum(jumped) - lanes.width * from_left
