@@ -95,3 +95,9 @@ def test_record_from_anywhere_shows_a_usual_road(scenario: object) -> None:
     assert (found["stations"], found["events"], found["zones"]) == ([], [], [])
     about = {"scenario": scenario, "configuration": {"setup": {"seed": 1}}}
     assert cars_of_record(about, 1000.0) == []
+
+
+def test_sizes_that_a_record_tells_are_drawn_as_far_as_they_can_be() -> None:
+    cars = [{"kind": "truck", "length": 9.0, "width": 2.5}, {"kind": 3, "length": 1e9}]
+    found = cars_of_record({"other_cars": [*cars, "car"]}, 1000.0)
+    assert found == [["truck", 9.0, 2.5], ["car", 4.5, 1.8]]

@@ -27,13 +27,7 @@ from costeer.intention.features import (
 )
 from costeer.records.adaptation import AS_IT_IS, Adaptation, adapted, cleaned
 from costeer.records.checks import check_time, text_told
-from costeer.records.contradictions import (
-    PAPERS,
-    Lanes,
-    contradictions,
-    lanes_of,
-    unwrapped,
-)
+from costeer.records.contradictions import Lanes, contradictions, lanes_of, unwrapped
 from costeer.records.names import empty_told, groups, names_of
 from costeer.records.plausible import unit_doubts
 from costeer.records.record import TrialRecord, read_noted
@@ -155,7 +149,7 @@ def _contradicting(
     """
     if lanes is None and "adjacent_side" in columns:
         columns = {key: values for key, values in columns.items() if key != "lane"}
-    return [f"{name}: {each}" for each in contradictions(columns, lanes or PAPERS)]
+    return [f"{name}: {each}" for each in contradictions(columns, lanes or Lanes())]
 
 
 def lacking(recording: Recording, absent: Sequence[str]) -> Recording:

@@ -125,16 +125,16 @@ def cars_of_record(about: Mapping[str, object], length: float) -> list[list[obje
 
     Older records do not say sizes; those follow from the scenario, if it is whole.
     """
-    told = _entries(about.get("other_cars"))[:MOST_CARS]
-    if told:
-        kinds = [str(each.get("kind")) for each in told]
+    sizes = _entries(about.get("other_cars"))[:MOST_CARS]
+    if sizes:
+        kinds = [str(each.get("kind")) for each in sizes]
         return [
             [
                 kind if kind in KINDS else "car",
                 bounded(each.get("length"), KINDS["car"][0], 0.2, 30.0),
                 bounded(each.get("width"), KINDS["car"][1], 0.2, 4.0),
             ]
-            for kind, each in zip(kinds, told, strict=True)
+            for kind, each in zip(kinds, sizes, strict=True)
         ]
     setup = _mapping(_mapping(about.get("configuration")).get("setup"))
     seed, participant = setup.get("seed"), setup.get("participant")
