@@ -122,7 +122,7 @@ def drawn(changes: dict[str, LaneChange], alone: LaneChange) -> Figure:
     """One panel a method."""
     rows = -(-len(changes) // COLUMNS)
     figure = new_figure(FULL_WIDTH_MM, 36.0 * rows + 20.0)
-    margins = Margins(left=14.0, top=14.0, right=4.0)
+    margins = Margins(left=14.0, top=14.0, right=4.0, between_rows=9.0)
     grid = panels(figure, rows, COLUMNS, margins)
     every = [axes for line in grid for axes in line]
     for axes, (name, change) in zip(every, changes.items(), strict=False):
@@ -130,10 +130,11 @@ def drawn(changes: dict[str, LaneChange], alone: LaneChange) -> Figure:
     for axes in every[len(changes) :]:
         axes.set_visible(False)
     for k, axes in enumerate(every[: len(changes)]):
-        axes.tick_params(labelleft=k % COLUMNS == 0, labelbottom=True)
+        last = k + COLUMNS >= len(changes)
+        axes.tick_params(labelleft=k % COLUMNS == 0, labelbottom=last)
         if k % COLUMNS == 0:
             axes.set_ylabel("Torque [N·m]")
-        if k + COLUMNS >= len(changes):
+        if last:
             axes.set_xlabel("Since onset [s]")
     keys = [
         Line2D([], [], color=SIGNAL_COLOURS["driver"], label="driver"),

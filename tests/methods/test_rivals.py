@@ -6,13 +6,19 @@ import re
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 from costeer.base.described import value_at
+from costeer.loop.parameters import DT
 from costeer.methods.interface import usual_parameters
 from costeer.methods.registry import METHODS
 from costeer.methods.rivals import RIVALS
+from costeer.plant.parameters import RoadParameters
+from costeer.plant.road import cruising_lane
 from costeer.testing import check_method
+from costeer.testing.drive import driven, random_drive, strong_parameters
+from costeer.testing.method import _check_compiled_step
 
 PAGE = Path(__file__).parents[2] / "docs" / "methods.md"
 
@@ -27,8 +33,31 @@ def test_a_rival_is_pure_bounded_mirrored_and_bears_lost_samples(method: Any) ->
 
 @pytest.mark.slow
 @every_rival
-def test_the_engines_agree_on_a_rival(method: Any) -> None:
-    said = dict(check_method(method, jax=True).findings)
+def test_a_step_of_a_rival_is_the_same_in_every_engine(method: Any) -> None:
+    jax = pytest.importorskip("jax")
+    road = RoadParameters()
+    moments = random_drive(np.random.default_rng(1), road)
+    in_python = driven(method, moments, road)
+    assert "us a control step" in _check_compiled_step(method, moments, in_python)
+
+    def traced(tree: Any) -> Any:
+        return jax.tree_util.tree_map(jax.numpy.asarray, tree)
+
+    with jax.experimental.enable_x64():
+        given = strong_parameters(method, road)
+        state = traced(method.initial_state(given, cruising_lane(road)))
+        given = traced(given)
+        step = jax.jit(lambda s, m, r: method.step(given, s, m, r, DT))
+        for now, answer in zip(moments[:300], in_python.answers, strict=False):
+            state, said = step(state, traced(now.measurement), traced(now.request))
+            expected = pytest.approx(answer.applied_torque, abs=1e-9)
+            assert float(said.applied_torque) == expected
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["lane-keeping", "inclusion"])
+def test_the_closed_loop_of_a_rival_is_the_same_in_every_engine(name: str) -> None:
+    said = dict(check_method(name, jax=True).findings)
     assert said["engines"] == "python and numba agree; jax agrees"
 
 
