@@ -8,8 +8,10 @@ import numpy as np
 import pytest
 
 from costeer.comparison.criteria import AIMS, CRITERIA, SPEAKING
+from costeer.comparison.design import Course, Entrant, cells_of
 from costeer.comparison.effects import effect_rows, mean_rows, paired_effect
 from costeer.comparison.figures import over_scenarios
+from costeer.comparison.measures import COLUMNS
 from costeer.comparison.results import Failure
 from costeer.comparison.tables import winner_text
 from costeer.comparison.winners import (
@@ -20,6 +22,7 @@ from costeer.comparison.winners import (
     losses,
     winner_rows,
 )
+from costeer.comparison.worst import worst_drives
 from tests.comparison.made_up import Given, results
 
 NAN = math.nan
@@ -172,6 +175,33 @@ def test_trade_offs_take_the_roads_and_drivers_that_all_methods_have() -> None:
     # Road two says nothing of b, so it does not count for a either.
     assert points["a"].mean == pytest.approx(2.0)
     assert points["b"].mean == pytest.approx(3.0)
+
+
+def test_the_worst_of_a_method_is_a_collision_then_departures_then_the_first() -> None:
+    found = results(
+        {
+            ("one", "none"): {"a": [0.0, 2.0, 2.0], "b": [0.0, 0.0, 0.0]},
+            ("two", "none"): {"a": [9.0, 0.0, 1.0], "b": [0.0, 1.0, 3.0]},
+        },
+        "num_lane_departures",
+    )
+    names = ("a", "b")
+    entrants = [Entrant(name, name, True) for name in names]
+    courses = [Course(name, name, 1.0, 1.0) for name in ("one", "two")]
+    cells = cells_of(entrants, courses, ("none",), ())
+
+    def worst() -> list[tuple[str, str, int]]:
+        drives = worst_drives(found, cells)
+        return [
+            (d.cell.entrant.name, d.cell.course.name, d.participant) for d in drives
+        ]
+
+    assert worst() == [("a", "two", 1), ("b", "two", 3)]
+    hit = COLUMNS.index("num_collisions")
+    found.values["one", "none", "a"][1:, hit] = 1.0
+    assert worst() == [("a", "one", 2), ("b", "two", 3)]
+    found.values["two", "none", "b"][:] = math.nan
+    assert worst() == [("a", "one", 2)]
 
 
 def test_each_aim_has_a_measure_that_speaks_for_it() -> None:

@@ -193,7 +193,7 @@ def _sections(material: Material, pictures: dict[str, Picture]) -> list[Section]
         Section(
             "loses",
             "Where the paper's method loses",
-            (loses(material.lost, results),),
+            () if lost else (loses(material.lost, results),),
             lost,
         ),
         Section(

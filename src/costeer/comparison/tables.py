@@ -44,6 +44,7 @@ def winners_table(results: Results, rows: Sequence[WinnerRow], speaking: bool) -
         header=("Aim" if speaking else "Measure", *results.scenarios),
         rows=tuple(cells),
         num_labels=1 + len(results.scenarios),
+        prose=True,
     )
 
 
