@@ -2,7 +2,7 @@
 
     python examples/pareto_tuning.py [TRIALS [TABLE.csv]]
 
-Pilot drivers, who are in no study, drive 4 km with each proposal. It changes no default.
+Pilot drivers, who are in no study, drive 4 km with each proposal. No default changes.
 """
 
 from __future__ import annotations

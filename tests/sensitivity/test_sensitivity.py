@@ -52,8 +52,9 @@ def test_a_sum_has_the_indices_of_its_weights() -> None:
 
 
 def test_factors_that_only_act_together_have_a_total_alone() -> None:
-    # Of (u-1/2)(v-1/2) no part is by u or v alone. The estimate of a total is a mean of
-    # 1024 squares whose standard deviation is 1.8 of it: three standard errors are 0.17.
+    # Of (u-1/2)(v-1/2) no part is by u or v alone. The estimate of a total is a mean
+    # of 1024 squares whose standard deviation is 1.8 of it: three standard errors are
+    # 0.17.
     settings = Settings(base=1024)
     values = np.array(
         [(u[3] - 0.5) * (u[4] - 0.5) for u in map(unit, points(settings))]
@@ -107,7 +108,7 @@ def test_an_analysis_goes_on_where_it_stopped(tmp_path: Path) -> None:
     with pytest.raises(KeyboardInterrupt):
         drive_all(tmp_path, SMALL, 1, ignore, stopping)
     kept = len(list((tmp_path / "results").iterdir()))
-    assert kept == 29
+    assert 29 <= kept <= 87  # others ran until the stop was seen
     asked.clear()
 
     def counted(point: Point) -> Outcome:

@@ -113,9 +113,10 @@ def _outcomes(found: Indices) -> list[tuple[str, str]]:
         told.append(
             (
                 aim.title,
-                f"{first.factor} {first.total:.2f} ± {first.total_half_width:.2f}, then "
-                f"{second.factor} {second.total:.2f} ± {second.total_half_width:.2f} "
-                "(total index).",
+                f"{first.factor} {first.total:.2f} ± {first.total_half_width:.2f}, "
+                "then "
+                f"{second.factor} {second.total:.2f} ± "
+                f"{second.total_half_width:.2f} (total index).",
             )
         )
     return told
