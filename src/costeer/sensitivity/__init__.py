@@ -1,0 +1,1 @@
+"""Which parameters of the guidance decide what: Sobol indices with pilot drivers."""

@@ -1,0 +1,161 @@
+"""Sobol indices agree with closed forms; an analysis goes on where it stopped."""
+
+from __future__ import annotations
+
+import csv
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from costeer.loop.scenario import PILOT_SEED, loop_parameters
+from costeer.sensitivity.factors import AIMS, FACTORS
+from costeer.sensitivity.report import binned, write_report
+from costeer.sensitivity.run import (
+    Outcome,
+    Point,
+    Settings,
+    check_settings,
+    drive_all,
+    indices_of,
+    points,
+    setup_of,
+)
+
+pytest.importorskip("SALib")
+
+SMALL = Settings(base=8, drivers=1, length=1500.0)
+
+
+def ignore(_: int) -> None:
+    """Show no progress."""
+
+
+def unit(point: Point) -> list[float]:
+    """Factors from 0 to 1 within their bounds."""
+    pairs = zip(point, FACTORS, strict=True)
+    return [(x - each.low) / (each.high - each.low) for x, each in pairs]
+
+
+def test_a_sum_has_the_indices_of_its_weights() -> None:
+    # Var of w·u is w²/12, so the shares of 1, 2 and 3 are 1/14, 4/14 and 9/14, alone
+    # as in total. The scrambled sequence of 1024 is within a hundredth of them.
+    settings = Settings(base=1024)
+    values = np.array([u[0] + 2 * u[1] + 3 * u[2] for u in map(unit, points(settings))])
+    found = indices_of(settings, "made up", values)
+    assert not isinstance(found, str)
+    wanted = [1 / 14, 4 / 14, 9 / 14, *[0.0] * (len(FACTORS) - 3)]
+    assert [row.first_order for row in found] == pytest.approx(wanted, abs=0.02)
+    assert [row.total for row in found] == pytest.approx(wanted, abs=0.02)
+    for row, share in zip(found, wanted, strict=True):
+        assert abs(row.total - share) <= 2.0 * row.total_half_width + 1e-12
+
+
+def test_factors_that_only_act_together_have_a_total_alone() -> None:
+    # Of (u-1/2)(v-1/2) no part is by u or v alone. The estimate of a total is a mean
+    # of 1024 squares whose standard deviation is 1.8 of it: three standard errors are
+    # 0.17.
+    settings = Settings(base=1024)
+    values = np.array(
+        [(u[3] - 0.5) * (u[4] - 0.5) for u in map(unit, points(settings))]
+    )
+    found = indices_of(settings, "made up", values)
+    assert not isinstance(found, str)
+    assert [row.first_order for row in found[3:5]] == pytest.approx([0, 0], abs=0.05)
+    assert [row.total for row in found[3:5]] == pytest.approx([1, 1], abs=0.17)
+
+
+def test_a_measure_that_does_not_vary_or_is_missing_says_so() -> None:
+    same = indices_of(SMALL, "m", np.full(88, 2.0))
+    assert same == "all samples have the same value"
+    some = np.arange(88.0)
+    some[3] = np.nan
+    assert indices_of(SMALL, "m", some) == "1 of 88 samples have no value"
+
+
+def test_usual_values_are_those_of_the_guidance_and_within_the_bounds() -> None:
+    usual = tuple(each.usual for each in FACTORS)
+    setup = setup_of(SMALL, usual, 1)
+    given = loop_parameters(setup).controller
+    plain = loop_parameters(
+        setup._replace(parameters=(), condition="strong-normal")
+    ).controller
+    assert given == plain
+    assert all(each.low <= each.usual <= each.high for each in FACTORS)
+    assert setup.seed == PILOT_SEED
+
+
+def test_only_whole_numbers_of_samples_are_driven() -> None:
+    place = [each.whole for each in FACTORS].index(True)
+    assert all(point[place] == int(point[place]) for point in points(SMALL))
+
+
+def made_up(point: Point) -> Outcome:
+    """Every measure is a sum of the factors; one is never there."""
+    total = sum(unit(point))
+    return {aim.name: total for aim in AIMS} | {"swrr": float("nan")}
+
+
+def test_an_analysis_goes_on_where_it_stopped(tmp_path: Path) -> None:
+    asked: list[Point] = []
+
+    def stopping(point: Point) -> Outcome:
+        asked.append(point)
+        if len(asked) == 30:
+            raise KeyboardInterrupt
+        return made_up(point)
+
+    with pytest.raises(KeyboardInterrupt):
+        drive_all(tmp_path, SMALL, 1, ignore, stopping)
+    kept = len(list((tmp_path / "results").iterdir()))
+    assert 29 <= kept <= 87  # others ran until the stop was seen
+    asked.clear()
+
+    def counted(point: Point) -> Outcome:
+        asked.append(point)
+        return made_up(point)
+
+    outcomes = drive_all(tmp_path, SMALL, 1, ignore, counted)
+    assert len(asked) == 88 - kept
+    assert [each["sdlp"] for each in outcomes] == [
+        made_up(point)["sdlp"] for point in points(SMALL)
+    ]
+    with pytest.raises(ValueError, match="holds an analysis with other settings"):
+        drive_all(tmp_path, SMALL._replace(seed=2), 1, ignore, made_up)
+
+
+def test_a_report_has_every_measure_and_says_what_is_missing(tmp_path: Path) -> None:
+    outcomes = drive_all(tmp_path, SMALL, 1, ignore, made_up)
+    page = write_report(tmp_path, SMALL, outcomes).read_text("utf-8")
+    assert "no index: 88 of 88 samples have no value" in page
+    with (tmp_path / "indices.csv").open(encoding="utf-8", newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert len(rows) == len(FACTORS) * (len(AIMS) - 1)
+    drawn = {file.stem for file in (tmp_path / "figures").glob("*.svg")}
+    assert {"indices", "curves-sdlp"} <= drawn
+    assert "curves-swrr" not in drawn
+
+
+def test_bins_hold_the_means_of_what_is_in_them() -> None:
+    x = np.array([0.0, 0.1, 0.5, 1.0])
+    middle, mean, half = binned(x, np.array([1.0, 3.0, 5.0, 7.0]), 0.0, 1.0)
+    assert middle[0] == pytest.approx(1 / 16)
+    assert (mean[0], mean[4], mean[7]) == (2.0, 5.0, 7.0)
+    # Standard deviation of 1 and 3 is the root of 2, of their mean 1.
+    assert half[0] == pytest.approx(1.96)
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"base": 100}, "samples is 100; give a power of two"),
+        ({"base": 1}, "samples is 1;"),
+        ({"drivers": 0}, "drivers is 0; give 1 to"),
+        ({"length": 100.0}, "length is 100; give 1500 to"),
+    ],
+)
+def test_settings_out_of_range_are_refused(
+    changes: dict[str, int], message: str
+) -> None:
+    with pytest.raises(ValueError, match=message):
+        check_settings(SMALL._replace(**changes))
