@@ -253,3 +253,25 @@ def test_without_an_obstacle_evasion_changes_no_bit() -> None:
     assert set(one["lane"]) == {0, 1}  # with a leader, and an overtaking
     for name, values in one.items():
         np.testing.assert_array_equal(values, two[name], err_msg=name)
+
+
+WORKS = Scenario(
+    "works",
+    road=Road(length=1500.0),
+    actors=(Actor("works", "truck", lane=1, at=1000.0),),
+)
+
+
+@pytest.mark.parametrize("participant", range(1, 7))
+def test_what_stands_far_ahead_is_passed_by_a_calm_lane_change(
+    participant: int,
+) -> None:
+    setup = TrialSetup(participant=participant, intention="off", length=1500.0)
+    record = simulate_trial(setup._replace(scenario=WORKS))
+    columns = record.columns
+    assert columns["longitudinal_position"][-1] >= 1499.0
+    # 0.2 g of braking and 60 deg at the wheel are no emergency.
+    assert columns["longitudinal_acceleration"].min() > -2.0
+    assert np.degrees(np.abs(columns["steering_wheel_angle"]).max()) < 60.0
+    beside = np.abs(columns["longitudinal_position"] - 1000.0) < 8.0
+    assert (columns["lane"][beside] == 0).all()

@@ -1,8 +1,9 @@
 """Whether to overtake and to return: slower cars, gaps, and what is worth it.
 
 A driver overtakes when a slower leader is close and either slow enough to be worth it
-or has been in the way for longer than the driver's patience; a leader that is not
-slower than the driver wants to be is followed. Both ways need a gap in the other lane.
+or has been in the way for longer than the driver's patience. What stands or crawls is
+seen from afar, and passed by a lane change while there is time for one. A leader that
+is not slower than the driver wants to be is followed. All ways need a gap.
 """
 
 from __future__ import annotations
@@ -14,6 +15,18 @@ from costeer.base.array import Flag, Real, compiled
 from costeer.plant.following import LaneOutlook
 from costeer.plant.traffic import LeaderState
 from costeer.sensing.measurement import Measurement
+
+FORESIGHT = 15.0
+"""What stands or crawls ahead is passed as soon as it would be met within this time
+[s]. Source: assumed, a lane change, its preparation, and then some."""
+
+CRAWLING = 8.0
+"""It crawls when it is slower than the own car by this [m/s]. Source: assumed, twice
+the largest difference of the experiment."""
+
+CALM_BRAKING = 2.0
+"""What asks for more braking than this is an emergency and no lane change [m/s²].
+Source: `EvasionParameters.danger_braking`."""
 
 
 class DecisionParameters(NamedTuple):
@@ -144,11 +157,27 @@ def is_worth_returning(parameters: DecisionParameters, around: Surroundings) -> 
 
 
 @compiled
+def is_met_soon(gap: Real, closing: Real) -> Flag:
+    """Whether something that stands or crawls is seen in time to change lanes.
+
+    Args:
+        gap: To it, positive ahead [m].
+        closing: How much faster the own car is [m/s].
+    """
+    soon = gap < FORESIGHT * closing
+    calmly = closing * closing < 2.0 * CALM_BRAKING * gap
+    return (closing > CRAWLING) & soon & calmly
+
+
+@compiled
 def in_the_way(parameters: DecisionParameters, around: Surroundings) -> Flag:
     """Whether a leader slower than wanted is close ahead in the own lane."""
     leader, measurement = around.leader, around.measurement
     gap = leader.longitudinal_position - measurement.longitudinal_position
-    close = (gap > 0.0) & (gap < parameters.headway * measurement.longitudinal_velocity)
+    speed = measurement.longitudinal_velocity
+    near = gap < parameters.headway * speed
+    met = is_met_soon(gap, speed - leader.longitudinal_velocity)
+    close = (gap > 0.0) & (near | met)
     ahead = leader.present & (leader.lane == measurement.lane)
     return ahead & close & (leader.longitudinal_velocity < around.wanted_speed)
 
