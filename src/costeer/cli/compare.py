@@ -133,13 +133,17 @@ def _run(
                 out,
                 settings,
                 jobs=jobs,
-                report=partial(full_report, tell=lambda words: note(f"report: {words}")),
+                report=partial(full_report, tell=_tell),
                 progress=shown,
             )
         except StudyInterrupted as stop:
             note(f"costeer: {stop}")
             raise
     return outcome, time.monotonic() - begun
+
+
+def _tell(words: str) -> None:
+    note(f"report: {words}")
 
 
 def _print_outcome(outcome: ComparisonOutcome, seconds: float) -> None:
