@@ -43,222 +43,210 @@ class Criterion(NamedTuple):
     speaks: bool = False
 
 
-def _safety() -> tuple[Criterion, ...]:
-    aim = "safety"
-    return (
-        Criterion(
-            "num_safety_events",
-            aim,
-            "Departures and collisions",
-            "Departures, collisions",
-            "per drive",
-            "lane departures and collisions together",
-            "-",
-            speaks=True,
-        ),
-        Criterion(
-            "line_crossing_time_minimum",
-            aim,
-            "Smallest time to the line",
-            "Least time to line",
-            "s",
-            "smallest time to line crossing while the lane is kept",
-            "s",
-            better=MORE,
-            digits=2,
-            speaks=True,
-        ),
-        Criterion(
-            "num_lane_departures",
-            aim,
-            "Lane departures",
-            "Departures",
-            "per drive",
-            "times a wheel crossed a line outside a lane change",
-            "-",
-        ),
-        Criterion(
-            "num_collisions",
-            aim,
-            "Collisions",
-            "Collisions",
-            "per drive",
-            "collisions with cars, obstacles and barriers",
-            "-",
-        ),
-        Criterion(
-            "time_to_collision_minimum",
-            aim,
-            "Smallest time to collision",
-            "Least time to collision",
-            "s",
-            "smallest time to collision with the car ahead in the lane",
-            "s",
-            better=MORE,
-            digits=2,
-        ),
-    )
+_SAFETY = (
+    Criterion(
+        "num_safety_events",
+        "safety",
+        "Departures and collisions",
+        "Departures, collisions",
+        "per drive",
+        "lane departures and collisions together",
+        "-",
+        speaks=True,
+    ),
+    Criterion(
+        "line_crossing_time_minimum",
+        "safety",
+        "Smallest time to the line",
+        "Least time to line",
+        "s",
+        "smallest time to line crossing while the lane is kept",
+        "s",
+        better=MORE,
+        digits=2,
+        speaks=True,
+    ),
+    Criterion(
+        "num_lane_departures",
+        "safety",
+        "Lane departures",
+        "Departures",
+        "per drive",
+        "times a wheel crossed a line outside a lane change",
+        "-",
+    ),
+    Criterion(
+        "num_collisions",
+        "safety",
+        "Collisions",
+        "Collisions",
+        "per drive",
+        "collisions with cars, obstacles and barriers",
+        "-",
+    ),
+    Criterion(
+        "time_to_collision_minimum",
+        "safety",
+        "Smallest time to collision",
+        "Least time to collision",
+        "s",
+        "smallest time to collision with the car ahead in the lane",
+        "s",
+        better=MORE,
+        digits=2,
+    ),
+)
 
 
-def _performance() -> tuple[Criterion, ...]:
-    aim = "performance"
-    return (
-        Criterion(
-            "sdlp",
-            aim,
-            "SDLP",
-            "SDLP",
-            "m",
-            "standard deviation of the lateral position in lane keeping",
-            "m",
-            speaks=True,
-        ),
-        Criterion(
-            "change_duration",
-            aim,
-            "Lane change duration",
-            "Lane change",
-            "s",
-            "mean duration of the drive's lane changes",
-            "s",
-            better=NEITHER,
-            digits=2,
-        ),
-        Criterion(
-            "overshoot",
-            aim,
-            "Overshoot",
-            "Overshoot",
-            "m",
-            "mean overshoot of the drive's lane changes",
-            "m",
-        ),
-    )
+_PERFORMANCE = (
+    Criterion(
+        "sdlp",
+        "performance",
+        "SDLP",
+        "SDLP",
+        "m",
+        "standard deviation of the lateral position in lane keeping",
+        "m",
+        speaks=True,
+    ),
+    Criterion(
+        "change_duration",
+        "performance",
+        "Lane change duration",
+        "Lane change",
+        "s",
+        "mean duration of the drive's lane changes",
+        "s",
+        better=NEITHER,
+        digits=2,
+    ),
+    Criterion(
+        "overshoot",
+        "performance",
+        "Overshoot",
+        "Overshoot",
+        "m",
+        "mean overshoot of the drive's lane changes",
+        "m",
+    ),
+)
 
 
-def _effort() -> tuple[Criterion, ...]:
-    aim = "effort"
-    return (
-        Criterion(
-            "driver_torque_rms",
-            aim,
-            "Driver torque RMS",
-            "Driver torque",
-            "N·m",
-            "root mean square of the driver's torque",
-            "N·m",
-            speaks=True,
-        ),
-        Criterion(
-            "opposing_torque_rms",
-            aim,
-            "Opposing torque RMS",
-            "Opposing torque",
-            "N·m",
-            "root mean square of the guidance's torque against the driver's",
-            "N·m",
-        ),
-        Criterion(
-            "conflict_share",
-            aim,
-            "Time in conflict",
-            "Time in conflict",
-            "%",
-            "share of the time in which driver and guidance push against each other",
-            "-",
-            factor=100.0,
-            digits=2,
-        ),
-    )
+_EFFORT = (
+    Criterion(
+        "driver_torque_rms",
+        "effort",
+        "Driver torque RMS",
+        "Driver torque",
+        "N·m",
+        "root mean square of the driver's torque",
+        "N·m",
+        speaks=True,
+    ),
+    Criterion(
+        "opposing_torque_rms",
+        "effort",
+        "Opposing torque RMS",
+        "Opposing torque",
+        "N·m",
+        "root mean square of the guidance's torque against the driver's",
+        "N·m",
+    ),
+    Criterion(
+        "conflict_share",
+        "effort",
+        "Time in conflict",
+        "Time in conflict",
+        "%",
+        "share of the time in which driver and guidance push against each other",
+        "-",
+        factor=100.0,
+        digits=2,
+    ),
+)
 
 
-def _comfort() -> tuple[Criterion, ...]:
-    aim = "comfort"
-    return (
-        Criterion(
-            "lateral_jerk_rms",
-            aim,
-            "Lateral jerk RMS",
-            "Lateral jerk",
-            "m/s³",
-            "root mean square of the rate of the lateral acceleration",
-            "m/s³",
-            speaks=True,
-        ),
-        Criterion(
-            "wheel_rate_rms",
-            aim,
-            "Wheel rate RMS",
-            "Wheel rate",
-            "deg/s",
-            "root mean square of the steering-wheel rate",
-            "rad/s",
-            factor=DEG,
-            digits=2,
-        ),
-    )
+_COMFORT = (
+    Criterion(
+        "lateral_jerk_rms",
+        "comfort",
+        "Lateral jerk RMS",
+        "Lateral jerk",
+        "m/s³",
+        "root mean square of the rate of the lateral acceleration",
+        "m/s³",
+        speaks=True,
+    ),
+    Criterion(
+        "wheel_rate_rms",
+        "comfort",
+        "Wheel rate RMS",
+        "Wheel rate",
+        "deg/s",
+        "root mean square of the steering-wheel rate",
+        "rad/s",
+        factor=DEG,
+        digits=2,
+    ),
+)
 
 
-def _annoyance() -> tuple[Criterion, ...]:
-    aim = "annoyance"
-    return (
-        Criterion(
-            "false_triggers_per_km",
-            aim,
-            "False activations",
-            "False activations",
-            "1/km",
-            "lane changes that the system started and nobody wanted",
-            "1/km",
-            speaks=True,
-        ),
-        Criterion(
-            "false_trigger_settle_time",
-            aim,
-            "Time to recover",
-            "Time to recover",
-            "s",
-            "mean time from a false activation until the car has settled again",
-            "s",
-            digits=2,
-        ),
-    )
+_ANNOYANCE = (
+    Criterion(
+        "false_triggers_per_km",
+        "annoyance",
+        "False activations",
+        "False activations",
+        "1/km",
+        "lane changes that the system started and nobody wanted",
+        "1/km",
+        speaks=True,
+    ),
+    Criterion(
+        "false_trigger_settle_time",
+        "annoyance",
+        "Time to recover",
+        "Time to recover",
+        "s",
+        "mean time from a false activation until the car has settled again",
+        "s",
+        digits=2,
+    ),
+)
 
 
-def _intention() -> tuple[Criterion, ...]:
-    aim = "intention"
-    return (
-        Criterion(
-            "detection_lead_time",
-            aim,
-            "Lead time",
-            "Lead time",
-            "s",
-            "mean of crossing minus first trigger over intended crossings, 0 if missed",
-            "s",
-            better=MORE,
-            digits=2,
-            speaks=True,
-        ),
-        Criterion(
-            "missed_per_km",
-            aim,
-            "Missed lane changes",
-            "Missed",
-            "1/km",
-            "intended crossings without a trigger",
-            "1/km",
-        ),
-    )
+_INTENTION = (
+    Criterion(
+        "detection_lead_time",
+        "intention",
+        "Lead time",
+        "Lead time",
+        "s",
+        "mean of crossing minus first trigger over intended crossings, 0 if missed",
+        "s",
+        better=MORE,
+        digits=2,
+        speaks=True,
+    ),
+    Criterion(
+        "missed_per_km",
+        "intention",
+        "Missed lane changes",
+        "Missed",
+        "1/km",
+        "intended crossings without a trigger",
+        "1/km",
+    ),
+)
 
 
 CRITERIA: tuple[Criterion, ...] = (
-    *_safety(),
-    *_performance(),
-    *_effort(),
-    *_comfort(),
-    *_annoyance(),
-    *_intention(),
+    *_SAFETY,
+    *_PERFORMANCE,
+    *_EFFORT,
+    *_COMFORT,
+    *_ANNOYANCE,
+    *_INTENTION,
 )
 NAMES: tuple[str, ...] = tuple(each.name for each in CRITERIA)
 AIMS: tuple[str, ...] = tuple(dict.fromkeys(each.aim for each in CRITERIA))

@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
@@ -81,9 +82,7 @@ def effects_against(
     others = [each for each in others if any(row.first == each for row in rows)]
     if not rows:
         return not_drawn(name, title, f"Nothing could be compared with {baseline}.")
-    num_rows = -(-len(shown) // _COLUMNS)
     height = max(5.0, 1.3 * len(results.scenarios) + 1.6) * len(others)
-    figure = new_figure(FULL_WIDTH_MM, 17.0 + num_rows * (height + 17.0))
     margins = Margins(
         left=_label_width(others),
         right=3.0,
@@ -92,15 +91,12 @@ def effects_against(
         between_columns=6.0,
         between_rows=17.0,
     )
-    grid = panels(figure, num_rows, _COLUMNS, margins)
-    flat = [axes for line in grid for axes in line]
-    for place, (axes, measure) in enumerate(zip(flat, shown, strict=False)):
+    figure, flat = _grid(len(shown), 17.0, height + 17.0, margins)
+    for place, (axes, measure) in enumerate(zip(flat, shown, strict=True)):
         own = [row for row in rows if row.measure == measure.name]
         _forest(axes, results, measure, own, others)
         axes.set_yticklabels(others if place % _COLUMNS == 0 else [])
         panel_letter(axes, "abcdefghi"[place])
-    for axes in flat[len(shown) :]:
-        axes.set_axis_off()
     figure.legend(
         handles=_scenario_handles(results.scenarios),
         loc="upper center",
@@ -118,6 +114,26 @@ def effects_against(
         f"each method; the numbers stand in effects.csv."
     )
     return Exhibit(name, title, caption, described, figure)
+
+
+def _grid(
+    number: int, beside_mm: float, each_mm: float, margins: Margins
+) -> tuple[Figure, list[Axes]]:
+    """A figure with so many panels in rows of `_COLUMNS`.
+
+    Args:
+        number: Of panels.
+        beside_mm: Height that no row takes.
+        each_mm: Height of a row with the space below it.
+        margins: White space.
+    """
+    num_rows = -(-number // _COLUMNS)
+    figure = new_figure(FULL_WIDTH_MM, beside_mm + num_rows * each_mm)
+    grid = panels(figure, num_rows, _COLUMNS, margins)
+    flat = [axes for line in grid for axes in line]
+    for axes in flat[number:]:
+        axes.set_axis_off()
+    return figure, flat[:number]
 
 
 def _is_of(row: EffectRow, baseline: str) -> bool:
@@ -173,21 +189,22 @@ def _forest(
             markerfacecolor=look.colour if filled else "white",
             zorder=3.0,
         )
-    axes.set_yticks(range(len(others)))
-    axes.set_ylim(len(others) - 0.5, -0.5)
+    _frame_forest(axes, measure, len(others))
+
+
+def _frame_forest(axes: Axes, measure: Criterion, number: int) -> None:
+    """Rows of a forest plot, the line of no difference, and the better side shaded."""
+    axes.set_yticks(range(number))
+    axes.set_ylim(number - 0.5, -0.5)
     axes.tick_params(axis="y", length=0.0)
-    for place in range(1, len(others)):
+    for place in range(1, number):
         axes.axhline(place - 0.5, color=RULE, linewidth=0.4, zorder=0.5)
     axes.margins(x=0.08)
     axes.autoscale_view(scaley=False)
     low, high = axes.get_xlim()
     low, high = min(low, 0.0), max(high, 0.0)
-    axes.axvspan(
-        *((low, 0.0) if measure.better == LESS else (0.0, high)),
-        color=SHADE,
-        linewidth=0.0,
-        zorder=0.0,
-    )
+    better = (low, 0.0) if measure.better == LESS else (0.0, high)
+    axes.axvspan(*better, color=SHADE, linewidth=0.0, zorder=0.0)
     axes.axvline(0.0, color=INK, linewidth=0.6, zorder=1.0)
     axes.set_xlim(low, high)
     axes.locator_params(axis="x", nbins=4)
@@ -231,11 +248,9 @@ def trade_offs(results: Results) -> Exhibit:
     ]
     if not pairs:
         return not_drawn(name, title, "Two methods with values of two aims are needed.")
-    num_rows = -(-len(pairs) // _COLUMNS)
     drawn = [m for m in results.methods if any(m in each for each in points.values())]
     legend_rows = -(-len(drawn) // 5)
     top = 7.0 + 4.0 * legend_rows
-    figure = new_figure(FULL_WIDTH_MM, top + 44.0 * num_rows)
     margins = Margins(
         left=14.0,
         right=3.0,
@@ -244,15 +259,12 @@ def trade_offs(results: Results) -> Exhibit:
         between_columns=17.0,
         between_rows=14.0,
     )
-    grid = panels(figure, num_rows, _COLUMNS, margins)
-    flat = [axes for line in grid for axes in line]
+    figure, flat = _grid(len(pairs), top, 44.0, margins)
     looked = looks(results.methods)
-    for place, (axes, (first, second)) in enumerate(zip(flat, pairs, strict=False)):
+    for place, (axes, (first, second)) in enumerate(zip(flat, pairs, strict=True)):
         measures = spoken[first], spoken[second]
         _scatter(axes, (points[first], points[second]), measures, looked)
         panel_letter(axes, "abcdefghijklmno"[place])
-    for axes in flat[len(pairs) :]:
-        axes.set_axis_off()
     handles = [_method_handle(each, looked[each]) for each in drawn]
     figure.legend(handles=handles, loc="upper center", ncol=5)
     caption = (
