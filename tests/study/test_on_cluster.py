@@ -10,7 +10,7 @@ import signal
 import subprocess
 import sys
 from collections.abc import Iterator
-from contextlib import ExitStack, contextmanager
+from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
@@ -120,11 +120,12 @@ if __name__ == "__main__":
 """
 
 
-def started(tmp_path: Path, *words: str) -> subprocess.Popen[str]:
+@contextmanager
+def started(tmp_path: Path, *words: str) -> Iterator[subprocess.Popen[str]]:
     """A study of made-up trials as a user starts it, in a process group of its own."""
     script = tmp_path / "script.py"
     script.write_text(CANCELLED)
-    return subprocess.Popen(
+    with subprocess.Popen(
         [sys.executable, str(script), str(tmp_path / "out"), *words],
         cwd=ROOT,
         env={**os.environ, "PYTHONPATH": os.pathsep.join([str(ROOT), *sys.path])},
@@ -132,16 +133,23 @@ def started(tmp_path: Path, *words: str) -> subprocess.Popen[str]:
         stderr=subprocess.PIPE,
         text=True,
         start_new_session=True,
-    )
+    ) as process:
+        try:
+            yield process
+        finally:
+            with suppress(ProcessLookupError):
+                os.killpg(process.pid, signal.SIGKILL)
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="no process groups there")
 def test_ctrl_c_reaches_workers_too_and_loses_nothing(tmp_path: Path) -> None:
-    process = started(tmp_path, "--cluster", TWO, "--no-records")
     results = tmp_path / "out" / "results"
-    wait_for(lambda: process.poll() is not None or any(results.glob("*.json")), LONG)
-    os.killpg(process.pid, signal.SIGINT)
-    _, said = process.communicate(timeout=LONG)
+    with started(tmp_path, "--cluster", TWO, "--no-records") as process:
+        wait_for(
+            lambda: process.poll() is not None or any(results.glob("*.json")), LONG
+        )
+        os.killpg(process.pid, signal.SIGINT)
+        _, said = process.communicate(timeout=LONG)
     assert process.returncode == 130, said
     kept = len(list(results.glob("*.json")))
     assert f"costeer: {kept} of 180 trials are done and kept in" in said
@@ -187,8 +195,10 @@ def scheduler(
 
 def test_a_lost_scheduler_is_told_and_loses_nothing(tmp_path: Path) -> None:
     records = tmp_path / "out" / "records"
-    with scheduler(tmp_path) as (address, server):
-        process = started(tmp_path, "--cluster", address)
+    with (
+        scheduler(tmp_path) as (address, server),
+        started(tmp_path, "--cluster", address) as process,
+    ):
         wait_for(
             lambda: process.poll() is not None or any(records.glob("*.parquet")), LONG
         )
