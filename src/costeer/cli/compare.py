@@ -146,10 +146,6 @@ def _run(
     return outcome, time.monotonic() - begun
 
 
-def _tell(words: str) -> None:
-    note(f"report: {words}")
-
-
 def _print_outcome(outcome: ComparisonOutcome, seconds: float) -> None:
     num_new = outcome.num_trials - outcome.num_resumed
     typer.echo(f"{num_new} trials simulated, {outcome.num_resumed} were there")
