@@ -121,8 +121,8 @@ def draw(axes: Axes, name: str, change: LaneChange, alone: LaneChange) -> None:
 def drawn(changes: dict[str, LaneChange], alone: LaneChange) -> Figure:
     """One panel a method."""
     rows = -(-len(changes) // COLUMNS)
-    figure = new_figure(FULL_WIDTH_MM, 36.0 * rows + 20.0)
-    margins = Margins(left=14.0, top=14.0, right=4.0, between_rows=9.0)
+    figure = new_figure(FULL_WIDTH_MM, 38.0 * rows + 20.0)
+    margins = Margins(left=14.0, top=18.0, right=4.0, between_rows=15.0)
     grid = panels(figure, rows, COLUMNS, margins)
     every = [axes for line in grid for axes in line]
     for axes, (name, change) in zip(every, changes.items(), strict=False):
