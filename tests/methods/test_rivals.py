@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from costeer.base.described import value_at
+from costeer.loop.jax_rollout import float64
 from costeer.loop.parameters import DT
 from costeer.methods.interface import usual_parameters
 from costeer.methods.registry import METHODS
@@ -51,7 +52,7 @@ def test_a_step_of_a_rival_is_the_same_in_every_engine(method: Any) -> None:
     def traced(tree: Any) -> Any:
         return jax.tree_util.tree_map(jax.numpy.asarray, tree)
 
-    with jax.enable_x64(True):
+    with float64():
         given = strong_parameters(method, road)
         state = traced(method.initial_state(given, cruising_lane(road)))
         given = traced(given)
