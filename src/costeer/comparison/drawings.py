@@ -53,7 +53,7 @@ def worst_drawings(folder: Path, cases: Sequence[WorstCase]) -> Exhibit:
         left=12.0,
         right=3.0,
         top=8.0,
-        bottom=9.0,
+        bottom=3.0,
         between_columns=13.0,
         between_rows=9.0,
     )
@@ -82,7 +82,7 @@ def worst_drawings(folder: Path, cases: Sequence[WorstCase]) -> Exhibit:
 
 
 def _height_mm(num_rows: int) -> float:
-    return 10.0 + 46.0 * num_rows
+    return 4.0 + 46.0 * num_rows
 
 
 def _raise(axes: Axes, share: float) -> None:
