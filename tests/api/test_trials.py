@@ -40,9 +40,13 @@ def test_everything_that_a_trial_setup_knows_can_be_given() -> None:
             np.testing.assert_equal(given[name], usual, err_msg=name)
 
 
+WORK = {"jobs", "cluster", "records", "shard"}
+"""How a study is worked off, which changes nothing in it."""
+
+
 def test_everything_that_a_study_is_set_to_can_be_given() -> None:
     given = arguments(study)
-    assert set(given) == {*StudySettings._fields, "driver", "out", "jobs", "report"}
+    assert set(given) == {*StudySettings._fields, "driver", "out", "report", *WORK}
     for name, usual in StudySettings._field_defaults.items():
         if name not in {"parameters", "weights", "length", "speed"}:
             assert given[name] == usual, name

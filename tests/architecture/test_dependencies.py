@@ -31,7 +31,8 @@ LOADED_BY_NAME = {"websockets": "uvicorn"}
 
 def named(requirements: list[str]) -> set[str]:
     """Names of the packages in a list of requirements."""
-    return {re.split(r"[^A-Za-z0-9._-]", line, maxsplit=1)[0] for line in requirements}
+    named = (re.split(r"[^A-Za-z0-9._-]", line, maxsplit=1)[0] for line in requirements)
+    return {name.lower() for name in named}
 
 
 @cache

@@ -145,7 +145,7 @@ def test_an_unfinished_comparison_has_a_report_that_says_so(tmp_path: Path) -> N
         (["--methods", "manual,ibsh"], "did you mean ibhs"),
         (["--methods", ","], "--methods names nothing"),
         (["--scenarios", "expresway"], "did you mean expressway"),
-        (["--mistakes", "nope"], "mistake 'nope' is not known"),
+        (["--mistakes", "nope"], "there is no mistake 'nope'"),
         (["--length", "3miles"], "'3miles' is not a length; give metres"),
         (["--participants", "0"], "participants is 0; give a whole number 1 to"),
         (["--jobs", "0"], "jobs is 0; give a whole number 1 to"),

@@ -73,6 +73,17 @@ def test_every_number_of_a_trial_can_be_set_or_is_an_option() -> None:
     assert OPTIONS.keys() <= decided
 
 
+WRONG = {
+    "mistakes.mass_ratio": ("controller.car.mass",),
+    "mistakes.tyre_ratio": (
+        "controller.car.front_cornering_stiffness",
+        "controller.car.rear_cornering_stiffness",
+    ),
+    "mistakes.friction_ratio": ("column.friction",),
+}
+"""What a mistake changes besides: what is believed of the car, and the true column."""
+
+
 def test_a_parameter_changes_in_the_loop_and_nothing_else_does() -> None:
     usual = leaves(USUAL)
     for name, value in OTHERS.items():
@@ -82,6 +93,8 @@ def test_a_parameter_changes_in_the_loop_and_nothing_else_does() -> None:
         if name.startswith(COPIED):
             expected |= {f"controller.{name}"}
         given = {found[leaf] for leaf in expected}
+        if name.startswith("mistakes."):
+            expected |= {"mistakes.any", *WRONG.get(name, ())}
         if name == "car.aligning_stiffness":
             expected |= {"controller.guidance.slip_angle_gain"}  # a share of it
         assert (changed, given) == (expected, {value}), name

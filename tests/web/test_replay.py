@@ -105,6 +105,7 @@ def test_the_page_is_told_what_jumps_between_two_samples(replay: Replay) -> None
         "head_yaw_valid",
         "torque_fault",
         "contact",
+        "driver_indicator",
     ]
 
 

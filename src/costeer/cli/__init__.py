@@ -43,8 +43,9 @@ class CommandGroup(LazyGroup):
         "evaluate": "Judge the intention network on records or a table.",
         "analyse": "Compute driving measures from records or a table.",
         "report": "Write tables, tests, figures and report.html of a study again.",
-        "merge": "Write tables and report of a study that was run in shards.",
-        "sensitivity": "Find which parameters of the guidance decide what.",
+        "merge": "Write tables and report of a study whose shards are all done.",
+        "sensitivity": "Find which parameters of the guidance decide what, by Sobol "
+        "indices.",
         "drive": "Drive by yourself: wheel, gamepad or keyboard; Ctrl-C ends it.",
         "session": "Run a study with people: plan, questionnaires, drives, data.",
         "scenario": "List, show, draw, make and export scenarios: roads, other cars, "

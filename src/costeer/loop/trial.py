@@ -216,14 +216,7 @@ def trial_metadata(
         "car": setup.car if isinstance(setup.car, str) else "own",
         "speed": setup.speed,
         "scenario": scenario_metadata(setup),
-        "mistakes": [
-            {
-                "kind": each.kind,
-                "size": mistakes.size_of(each),
-                "about": mistakes.described(each),
-            }
-            for each in trial_mistakes(setup)
-        ],
+        "mistakes": [mistakes.as_told(each) for each in trial_mistakes(setup)],
         "other_cars": sizes_of(scenario_named(setup.scenario), parameters.fleet),
         "driver": _driver_text(setup, driver),
         "driver_source_hash": driver_sources(driver),

@@ -209,6 +209,15 @@ def described(mistake: Mistake) -> str:
     return kind.about.format(f"{size_of(mistake):.3g}{unit}")
 
 
+def as_told(mistake: Mistake) -> dict[str, object]:
+    """A mistake as a record tells it: kind, size and words."""
+    return {
+        "kind": mistake.kind,
+        "size": size_of(mistake),
+        "about": described(mistake),
+    }
+
+
 def wrong_in(mistakes: Sequence[Mistake]) -> Iterator[tuple[int, str]]:
     """Place and words of everything in a list of mistakes that cannot be."""
     taken: dict[str, str] = {}

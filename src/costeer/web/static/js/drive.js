@@ -19,10 +19,8 @@ import { Strip } from "./strip.js";
 /** Longest time between two inputs [s]: they tell the server that the page lives. */
 const HEARTBEAT = 0.09;
 const [PING_SPACING, SECOND] = [500, 1000];
-/** Silence of an open socket after which the page says so [s]. */
-const SILENCE = 2;
-/** Code with which the server closes a socket that it does not want. */
-const REFUSED = 1008;
+/** Silence of an open socket after which the page says so [s]; code of one not wanted. */
+const [SILENCE, REFUSED] = [2, 1008];
 /** Pictures that a page draws unseen: by then everything that they need is built. */
 const WARM_PICTURES = 5;
 const INDICATOR_KEYS = { KeyZ: 1, Comma: 1, KeyX: -1, Period: -1 };
@@ -258,8 +256,8 @@ export class Drive {
   }
 
   figures() {
-    const { lateness, compute_time: computeTime } = this.lastFrame
-      ? this.columns.named(this.lastFrame) : { lateness: Number.NaN, compute_time: Number.NaN };
+    const told = this.lastFrame ? this.columns.named(this.lastFrame) : {};
+    const { lateness = Number.NaN, compute_time: computeTime = Number.NaN } = told;
     const latency = this.latency.summary();
     return { fps: this.pictures.fps, frameRate: this.states.fps, latency, lateness, computeTime };
   }
@@ -297,6 +295,4 @@ export class Drive {
 }
 
 /** Whether this page is seen; one that is prepared in a frame for later is inert. */
-function isSeen() {
-  return !globalThis.frameElement?.inert;
-}
+const isSeen = () => !globalThis.frameElement?.inert;
