@@ -121,7 +121,8 @@ def kills(number: int) -> int:
     changed = [name for name in names if one.get(name) != two.get(name)]
     print(
         f"{killed} kills in {num_trials} trials: {len(one)} files, {len(changed)} of "
-        f"them lost or with another byte"
+        f"them lost or with another byte",
+        *sorted(changed)[:3],
     )
     return 1 if changed or killed < number else 0
 
