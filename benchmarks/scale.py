@@ -110,12 +110,29 @@ def kills(number: int) -> int:
         length=600.0,
     )
     num_trials = 2 * settings.participants
-    draw, seen, killed = random.Random(SEED), 0, 0
+    draw = random.Random(SEED)
     moments = set(draw.sample(range(1, num_trials - TRIALS_A_KILL), number))
-    with (
-        tempfile.TemporaryDirectory() as folder,
-        workers(None, "local:2") as engine,
-    ):
+    with tempfile.TemporaryDirectory() as folder:
+        whole, out = Path(folder) / "whole", Path(folder) / "killed"
+        run_study(whole, settings, report=None)
+        killed = _run_killed(out, settings, moments, draw)
+        one, two = contents(whole), contents(out)
+    names = one.keys() | two.keys()
+    changed = [name for name in names if one.get(name) != two.get(name)]
+    print(
+        f"{killed} kills in {num_trials} trials: {len(one)} files, {len(changed)} of "
+        f"them lost or with another byte",
+        *sorted(changed)[:3],
+    )
+    return 1 if changed or killed < number else 0
+
+
+def _run_killed(
+    out: Path, settings: StudySettings, moments: set[int], draw: random.Random
+) -> int:
+    """Run a study on two workers and kill one at each of the moments; count them."""
+    seen = killed = 0
+    with workers(None, "local:2") as engine:
 
         @contextmanager
         def given(*_: object) -> Iterator[Any]:
@@ -129,28 +146,13 @@ def kills(number: int) -> int:
                 os.kill(draw.choice(pids), signal.SIGKILL)
                 killed += 1
 
-        whole, out = Path(folder) / "whole", Path(folder) / "killed"
-        run_study(whole, settings, report=None)
         usual, study_run.workers = study_run.workers, given
         try:
-            run_study(
-                out,
-                settings,
-                report=None,
-                progress=kill_some,
-                scale=Scale(cluster="local:2"),
-            )
+            scale = Scale(cluster="local:2")
+            run_study(out, settings, report=None, progress=kill_some, scale=scale)
         finally:
             study_run.workers = usual
-        one, two = contents(whole), contents(out)
-    changed = [
-        name for name in one.keys() | two.keys() if one.get(name) != two.get(name)
-    ]
-    print(
-        f"{killed} kills in {num_trials} trials: {len(one)} files, {len(changed)} of "
-        f"them lost or with another byte"
-    )
-    return 1 if changed or killed < number else 0
+    return killed
 
 
 def whole(drivers: int) -> int:

@@ -349,3 +349,15 @@ def test_the_report_is_written_by_the_report_room(
     )
     full_report(tmp_path)
     assert seen == [tmp_path]
+
+
+def test_what_a_killed_worker_had_half_written_is_gone_at_the_end(
+    tmp_path: Path, whole: dict[str, bytes]
+) -> None:
+    half = tmp_path / "records" / "02-manual.parquet.77.tmp"
+
+    def killed(_: TrialDone) -> None:
+        half.write_bytes(b"PAR1 half")
+
+    run_study(tmp_path, SMALL, report=plain_report, progress=killed, simulate=made_up)
+    assert contents(tmp_path) == whole

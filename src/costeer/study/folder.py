@@ -195,7 +195,7 @@ def _begin(folder: StudyFolder, command: str, alone: bool) -> None:
     else:
         write_text(path / STUDY_FILE, _study_text(folder, command))
     if alone:
-        _remove_leftovers(path)
+        remove_leftovers(path)
     (path / RECORDS).mkdir(exist_ok=True)
 
 
@@ -216,8 +216,8 @@ def _study_text(folder: StudyFolder, command: str) -> str:
     return f"# A costeer study. Run it again, or finish it, with\n#   {command}\n{body}"
 
 
-def _remove_leftovers(path: Path) -> None:
-    """Remove what a killed process had half written."""
+def remove_leftovers(path: Path) -> None:
+    """Remove what a killed process or worker had half written."""
     for folder in (path, path / RECORDS, path / RESULTS, path / "figures"):
         for leftover in folder.glob("*.tmp"):
             leftover.unlink(missing_ok=True)

@@ -32,6 +32,7 @@ from costeer.study.folder import (
     StudyFolder,
     opened_study,
     read_study,
+    remove_leftovers,
     unusable,
 )
 from costeer.study.locks import locked
@@ -150,6 +151,7 @@ def run_study(
             )
             done = _finished(folder, work, pool, progress, scale)
             if scale.shard.total == 1:
+                remove_leftovers(folder.path)  # of workers that were killed
                 write_results(folder, done, report)
     return outcome_of(folder.path, done)
 
