@@ -64,6 +64,9 @@ _POSITIVE = re.compile(
 _SIGNED = re.compile(r"_(bias|offset)$")
 """Names of what lies to either side, also if it is usually nothing."""
 
+_MOST = {"latency": 0.1}
+"""Largest value of what the loop can hold back for a few control steps only [s]."""
+
 _WIDE = 100.0
 """A parameter may be so many times larger or smaller than its usual value."""
 
@@ -90,6 +93,8 @@ def allowed(name: str, value: Real | bool, unit: str) -> Allowed:
     if value < 0.0 or _SIGNED.search(name):
         most = _WIDE * (abs(value) or 1.0)
         return Allowed(-most, most)
+    if name in _MOST:
+        return Allowed(0.0, _MOST[name])
     if _POSITIVE.search(name) and value > 0.0:
         return Allowed(value / _WIDE, value * _WIDE)
     if unit == "-" and value <= 1.0:

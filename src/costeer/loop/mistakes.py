@@ -50,7 +50,8 @@ class MistakeParameters(NamedTuple):
             scenario.
         tyre_ratio: Cornering stiffness that the method believes in, over the car's
             [-]. Source: the scenario.
-        latency: Of the motor, in whole control steps [s]. Source: the scenario.
+        latency: Of the motor, in whole control steps, at most six [s]. Source: the
+            scenario.
         motor_limit: Torque beyond which the motor is saturated [N·m]. Source: the
             scenario.
         off: 1 if the guidance goes off [-]. Source: the scenario.
@@ -96,10 +97,6 @@ class TorqueDelay(NamedTuple):
     four: Real = 0.0
     five: Real = 0.0
     six: Real = 0.0
-
-
-LONGEST_LATENCY = 6.0 * DT
-"""Of the motor [s]."""
 
 
 class MistakeState(NamedTuple):
@@ -339,15 +336,6 @@ def true_column(
 
 
 def judged(parameters: MistakeParameters) -> MistakeParameters:
-    """The parameters, with `any` as the others say.
-
-    Raises:
-        ValueError: If the latency is longer than `LONGEST_LATENCY`.
-    """
-    if parameters.latency > LONGEST_LATENCY * (1.0 + 1e-9):
-        raise ValueError(
-            f"mistakes.latency is {parameters.latency:g} s; give at most "
-            f"{LONGEST_LATENCY:g}"
-        )
+    """The parameters, with `any` as the others say."""
     calm = parameters == MistakeParameters(any=parameters.any)
     return parameters._replace(any=0.0 if calm else 1.0)
