@@ -142,6 +142,8 @@ class _Run:
     def _feed(self) -> None:
         try:
             for answer in self._engine.answers(work_block, self._blocks()):
+                if any(isinstance(each, Raised) for each in answer[1]):
+                    self.stopping.set()  # at once: nothing else is sent
                 self._queue.put(answer)
         except BaseException as error:
             self._queue.put(Raised(error))
