@@ -241,3 +241,11 @@ def test_the_command_is_the_comparison() -> None:
         "costeer compare --out FOLDER --methods manual,ibhs --scenarios "
         "expressway,cut-in --participants 12 --length 1800.0 --keep-records"
     )
+
+
+@pytest.mark.slow
+def test_workers_elsewhere_write_the_same_bytes(tmp_path: Path) -> None:
+    short = SMALL._replace(participants=3, length=400.0, mistakes=("none", "latency"))
+    run_comparison(tmp_path / "threads", short, jobs=2, report=None)
+    run_comparison(tmp_path / "workers", short, cluster="local:2", report=None)
+    assert contents(tmp_path / "workers") == contents(tmp_path / "threads")

@@ -31,6 +31,7 @@ def compare(
     intention: str = "scripted",
     length: float | None = None,
     jobs: int | None = None,
+    cluster: str = "",
     keep_records: bool = False,
     report: bool = True,
 ) -> ComparisonOutcome:
@@ -48,6 +49,7 @@ def compare(
         condition: Of the guidance, Table IV.
         intention: "scripted" (the driver's own plan is known), "network" or "off".
         length: Of every course; that of each scenario if None [m].
+        cluster: Whose workers drive, as "local:4"; none for threads.
         jobs: Blocks of drivers at the same time; as many as processors if None. The
             results do not depend on it.
         keep_records: Whether the record of every trial is kept.
@@ -83,7 +85,9 @@ def compare(
         keep_records=keep_records,
     )
     made = full_report if report else None
-    return run_comparison(os.fspath(out), settings, jobs=jobs, report=made)
+    return run_comparison(
+        os.fspath(out), settings, jobs=jobs, cluster=cluster, report=made
+    )
 
 
 def _is_all(given: object) -> bool:

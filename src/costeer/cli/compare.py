@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from costeer.cli.console import note, progress
+from costeer.cli.scaled import Cluster
 from costeer.cli.units import parse_length
 
 if TYPE_CHECKING:
@@ -59,6 +60,7 @@ def compare(
         int | None,
         typer.Option(help="Blocks of drivers at a time; as many as processors."),
     ] = None,
+    cluster: Cluster = "",
     keep_records: Annotated[
         bool, typer.Option("--keep-records", help="Keep the record of every trial.")
     ] = False,
@@ -90,7 +92,7 @@ def compare(
         length=length,
         keep_records=keep_records,
     )
-    _print_outcome(*_run(out, settings, jobs))
+    _print_outcome(*_run(out, settings, jobs, cluster))
 
 
 def _words(text: str, option: str) -> tuple[str, ...]:
@@ -110,7 +112,7 @@ def _tell(words: str) -> None:
 
 
 def _run(
-    out: Path, settings: ComparisonSettings, jobs: int | None
+    out: Path, settings: ComparisonSettings, jobs: int | None, cluster: str
 ) -> tuple[ComparisonOutcome, float]:
     """Run the comparison behind a progress display.
 
@@ -137,6 +139,7 @@ def _run(
                 out,
                 settings,
                 jobs=jobs,
+                cluster=cluster,
                 report=partial(full_report, tell=_tell),
                 progress=shown,
             )

@@ -8,7 +8,7 @@ in memory does not grow with the number of drivers.
 from __future__ import annotations
 
 import shlex
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import partial
 from pathlib import Path
 from typing import NamedTuple
@@ -37,8 +37,8 @@ from costeer.comparison.worst import write_worst
 from costeer.loop.trial import simulate_trial
 from costeer.methods.registry import METHODS
 from costeer.records.record import write_record
-from costeer.scale.jobs import MOST_JOBS, JobsStoppedError, default_jobs, run_jobs
-from costeer.study.configuration import check_count
+from costeer.scale.cluster import workers
+from costeer.scale.jobs import JobsStoppedError, Pool, run_jobs
 from costeer.study.run import StudyInterrupted, ignore
 from costeer.study.trials import LENGTH_OF_TRY, Simulate
 
@@ -54,12 +54,14 @@ class BlockDone(NamedTuple):
         num_failed: Of them, without a result.
         driver_seconds: That they lasted [s].
         resumed: Whether the results were there before.
+        outcomes: That are not written yet.
     """
 
     num_trials: int
     num_failed: int
     driver_seconds: float
     resumed: bool
+    outcomes: Sequence[TrialOutcome] = ()
 
 
 class ComparisonOutcome(NamedTuple):
@@ -121,6 +123,7 @@ def run_comparison(
     settings: ComparisonSettings = USUAL,
     *,
     jobs: int | None = None,
+    cluster: str = "",
     report: Callable[[Path], object] | None = full_report,
     progress: Callable[[BlockDone], None] = ignore,
     simulate: Simulate = simulate_trial,
@@ -132,6 +135,7 @@ def run_comparison(
         settings: What to compare.
         jobs: Blocks at the same time; as many as processors if None. The results do
             not depend on it.
+        cluster: Whose workers drive, as `local:4`; empty for threads.
         report: Writes tables, figures and report; None for the results only.
         progress: Called in this thread with each block that is done.
         simulate: Makes the record of a trial.
@@ -143,14 +147,14 @@ def run_comparison(
         StudyInterrupted: If the user stopped it; finished blocks are kept.
     """
     full, plan = prepared(settings, simulate)
-    jobs = default_jobs() if jobs is None else jobs
-    check_count("jobs", jobs, 1, MOST_JOBS)
     configuration = comparison_configuration(full, plan)
-    with opened_comparison(
-        Path(out), configuration, comparison_command(settings)
-    ) as folder:
-        work = partial(finish_block, folder, full, simulate)
-        done = _all_done(folder, plan, work, jobs, progress)
+    command = comparison_command(settings)
+    with (
+        workers(jobs, cluster) as pool,
+        opened_comparison(Path(out), configuration, command) as folder,
+    ):
+        work = partial(drive_block, folder, full, simulate)
+        done = _all_done(folder, plan, work, pool, progress)
         write_worst(folder, full, plan, simulate)
         if report is not None:
             report(folder.path)
@@ -163,29 +167,29 @@ def run_comparison(
     )
 
 
-def finish_block(
+def drive_block(
     folder: ComparisonFolder,
     settings: ComparisonSettings,
     simulate: Simulate,
     block: Block,
 ) -> BlockDone:
-    """Make sure that the results of a block are on disk.
+    """Simulate and measure the trials of a block; a worker elsewhere can do it.
 
     Raises:
-        OSError: If they cannot be written; nothing is left of them.
+        OSError: If a record that is to be kept cannot be written.
     """
-    there = read_block(folder, block)
-    outcomes = there
-    if outcomes is None:
-        finish = partial(_outcome, folder, settings, simulate, block)
-        outcomes = [finish(participant) for participant in block.participants]
-        write_block(folder, block, outcomes)
+    drive = partial(_outcome, folder, settings, simulate, block)
+    outcomes = [drive(participant) for participant in block.participants]
+    return _block_done(outcomes, resumed=False)._replace(outcomes=outcomes)
+
+
+def _block_done(outcomes: Sequence[TrialOutcome], resumed: bool) -> BlockDone:
     lasted = COLUMNS.index("duration")
     return BlockDone(
         num_trials=len(outcomes),
         num_failed=sum(bool(each.failure) for each in outcomes),
         driver_seconds=float(np.nansum([each.values[lasted] for each in outcomes])),
-        resumed=there is not None,
+        resumed=resumed,
     )
 
 
@@ -215,15 +219,29 @@ def _all_done(
     folder: ComparisonFolder,
     plan: Plan,
     work: Callable[[Block], BlockDone],
-    jobs: int,
+    pool: Pool,
     progress: Callable[[BlockDone], None],
 ) -> list[BlockDone]:
+    """Drive the blocks whose results are not there; write each as it comes."""
+    done: list[BlockDone] = []
+    missing: list[Block] = []
+    for block in plan.blocks:
+        if (there := read_block(folder, block)) is None:
+            missing.append(block)
+            continue
+        done.append(_block_done(there, resumed=True))
+        progress(done[-1])
+
+    def keep(block: Block, driven: BlockDone) -> BlockDone:
+        write_block(folder, block, driven.outcomes)
+        return driven._replace(outcomes=())
+
     try:
-        return run_jobs(work, plan.blocks, jobs, progress)
+        return done + run_jobs(work, missing, pool, progress, keep)
     except JobsStoppedError as stop:
         kept = (
-            f"{stop.num_done} of {len(plan.blocks)} blocks are done and kept in "
-            f"{folder.path}; run the same command again to go on from there"
+            f"{len(done) + stop.num_done} of {len(plan.blocks)} blocks are done and "
+            f"kept in {folder.path}; run the same command again to go on from there"
         )
         cause = stop.__cause__
         if isinstance(cause, KeyboardInterrupt):
