@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import hashlib
 import json
 import os
 import signal
@@ -10,6 +11,7 @@ import subprocess
 import sys
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -112,9 +114,29 @@ def cut_short(file: Path) -> None:
     file.write_bytes(file.read_bytes()[:-20])
 
 
+def sealed(results: dict[str, object]) -> str:
+    """Results as they are written, with the digest that they then have."""
+    text = json.dumps(results, separators=(",", ":"))
+    digest = hashlib.sha256(text.encode()).hexdigest()
+    return json.dumps({"sha256": digest, "results": results})
+
+
+def results_in(file: Path) -> dict[str, Any]:
+    return dict(json.loads(file.read_text())["results"])
+
+
 def of_another_comparison(file: Path) -> None:
-    content = json.loads(file.read_text())
-    file.write_text(json.dumps({**content, "comparison": "0"}))
+    file.write_text(sealed({**results_in(file), "comparison": "0"}))
+
+
+def with_another_number(file: Path) -> None:
+    told = json.loads(file.read_text())
+    told["results"]["trials"][0]["torque_faults"] += 1
+    file.write_text(json.dumps(told))
+
+
+def nested_too_deeply(file: Path) -> None:
+    file.write_text("[" * 200_000)
 
 
 def of_another_cell(file: Path) -> None:
@@ -123,12 +145,20 @@ def of_another_cell(file: Path) -> None:
 
 
 def with_a_driver_less(file: Path) -> None:
-    content = json.loads(file.read_text())
-    file.write_text(json.dumps({**content, "trials": content["trials"][:-1]}))
+    results = results_in(file)
+    file.write_text(sealed({**results, "trials": results["trials"][:-1]}))
 
 
 @pytest.mark.parametrize(
-    "damage", [cut_short, of_another_comparison, of_another_cell, with_a_driver_less]
+    "damage",
+    [
+        cut_short,
+        of_another_comparison,
+        of_another_cell,
+        with_a_driver_less,
+        with_another_number,
+        nested_too_deeply,
+    ],
 )
 def test_results_that_are_not_the_block_s_are_not_believed(
     tmp_path: Path, whole: dict[str, bytes], damage: Callable[[Path], None]

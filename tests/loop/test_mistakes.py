@@ -207,15 +207,15 @@ def test_mistakes_are_gated_by_any() -> None:
 
 @pytest.mark.parametrize("name", MISTAKES)
 def test_every_mistake_reaches_the_loop(name: str) -> None:
-    usual = loop_parameters(TrialSetup(condition="strong-normal"))
-    wrong = loop_parameters(TrialSetup(condition="strong-normal", mistakes=(name,)))
+    setup = TrialSetup(condition="strong-normal", scenario="three-lanes", speed=25.0)
+    usual = loop_parameters(setup)
+    wrong = loop_parameters(setup._replace(mistakes=(name,)))
     assert described(wrong) != described(usual)
     assert wrong.mistakes.any == (0.0 if name == "short-sight" else 1.0)
     kind = MISTAKES[name]
     assert kind.low <= kind.size <= kind.high
-    for value in (kind.low, kind.high):
-        word = f"{name}={value!r}"
-        loop_parameters(TrialSetup(condition="strong-normal", mistakes=(word,)))
+    for value in (kind.low, kind.high) if kind.unit else ():
+        loop_parameters(setup._replace(mistakes=(f"{name}={value!r}",)))
 
 
 @pytest.mark.parametrize(
@@ -226,12 +226,19 @@ def test_every_mistake_reaches_the_loop(name: str) -> None:
         (("late-trigger=x",), "no number after ="),
         (("late-trigger=nan",), "no finite size"),
         (("latency", "latency=0.05"), "latency stands twice"),
+        (("head-lost=1",), "head-lost has no size; leave it out"),
         (("silent-off", "fade-off"), "fade-off and silent-off exclude each other"),
     ],
 )
 def test_what_is_no_mistake_is_refused(words: tuple[str, ...], told: str) -> None:
     with pytest.raises(ValueError, match=told):
         parsed_mistakes(words)
+
+
+def test_the_wrong_side_is_refused_where_it_can_never_be() -> None:
+    setup = TrialSetup(condition="strong-normal", mistakes=("wrong-side",))
+    with pytest.raises(ValueError, match="needs three lanes or more; this road has 2"):
+        trial_mistakes(setup)
 
 
 def test_the_size_is_the_usual_one_unless_it_is_given() -> None:

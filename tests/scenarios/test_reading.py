@@ -46,6 +46,8 @@ events:
   - {kind: gust, at: 1300, length: 60, force: 1200}
 zones:
   - {name: curve, start: 400, end: 900}
+mistakes:
+  - {kind: torque-bias, size: 0.3}
 """
 
 # What is put in the place of what, the line that is named, and words of the message.
@@ -55,6 +57,11 @@ WRONG = [
     ("speed: 80 km/h", "speed: fast", 2, "is no speed"),
     ("speed: 80 km/h", "speed: 20 km/h", 2, "give 43.2 to 111.6 km/h"),
     ("name: bend", "name: Bend!", 1, "small letters"),
+    ("size: 0.3", "size: .nan", 23, "give a number from -3 to 3"),
+    ("size: 0.3", "size: 9", 23, "give a number from -3 to 3"),
+    ("torque-bias, size: 0.3", "wrong-side", 23, "needs three lanes or more"),
+    ("torque-bias, size: 0.3", "head-lost, size: 1", 23, "has no size"),
+    ("torque-bias", "torque-bais", 23, "did you mean torque-bias"),
     ("lanes: 2", "lanes: 1", 5, "from 2 to 6"),
     ("lanes: 2", "lanes: 2.5", 5, "a whole number"),
     ("lanes: 2", "lanes: " + "9" * 500, 5, "from 2 to 6"),

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from costeer.cli.console import note, progress
-from costeer.cli.scaled import Cluster
+from costeer.cli.scaled import FAILED, Cluster
 from costeer.cli.units import parse_length
 
 if TYPE_CHECKING:
@@ -29,12 +29,12 @@ def compare(
         ),
     ] = "all",
     scenarios: Annotated[
-        str,
+        str | None,
         typer.Option(
             help="Names of costeer scenario list, or FILE.yaml, with commas between.",
             show_default="six of them",
         ),
-    ] = "",
+    ] = None,
     mistakes: Annotated[
         str, typer.Option(help="Names with commas between, or all; one at a time.")
     ] = "none",
@@ -81,7 +81,7 @@ def compare(
 
     settings = ComparisonSettings(
         methods=() if methods.strip() == "all" else _words(methods, "methods"),
-        scenarios=_words(scenarios, "scenarios") if scenarios else SCENARIOS,
+        scenarios=SCENARIOS if scenarios is None else _words(scenarios, "scenarios"),
         mistakes=tuple(MISTAKES)
         if mistakes.strip() == "all"
         else _words(mistakes, "mistakes"),
@@ -154,6 +154,10 @@ def _print_outcome(outcome: ComparisonOutcome, seconds: float) -> None:
     typer.echo(f"{num_new} trials simulated, {outcome.num_resumed} were there")
     if num_new and seconds > 0:
         typer.echo(f"{outcome.driver_seconds:,.0f} driver-seconds in {seconds:.1f} s")
-    if outcome.num_failed:
-        typer.echo(f"{outcome.num_failed} trials failed; trials.csv says why")
     typer.echo(outcome.folder / "report.html")
+    if outcome.num_failed:
+        note(
+            f"costeer: {outcome.num_failed} trials failed; exclusions.csv says why, "
+            "and the same command tries them again"
+        )
+        raise typer.Exit(FAILED)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from costeer.cli.console import note
-from costeer.cli.units import parse_speed
+from costeer.cli.units import parse_length, parse_speed
 
 if TYPE_CHECKING:
     from costeer.scenarios.reading import Chosen
@@ -46,7 +46,12 @@ Mistakes = Annotated[
 ]
 Length = Annotated[
     float | None,
-    typer.Option(show_default="of the scenario", help="Of the course [m]."),
+    typer.Option(
+        parser=parse_length,
+        show_default="of the scenario",
+        metavar="LENGTH",
+        help="Of the course [m], or with its unit: 3km.",
+    ),
 ]
 Speed = Annotated[
     float | None,

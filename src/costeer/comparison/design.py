@@ -14,6 +14,7 @@ from costeer.comparison.mistakes import (
     NONE,
     check_mistakes,
     contradiction,
+    happens_on,
     with_mistake,
 )
 from costeer.loop.scenario import (
@@ -239,7 +240,7 @@ def cells_of(
         for course in courses
         for mistake in mistakes
         for entrant in entrants
-        if (entrant.name, mistake) not in without
+        if (entrant.name, mistake) not in without and happens_on(mistake, course)
     ]
     return tuple(Cell(number, *kind) for number, kind in enumerate(kinds, 1))
 

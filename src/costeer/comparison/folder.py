@@ -6,6 +6,7 @@ small file that is there whole or not at all; only those of this configuration c
 
 from __future__ import annotations
 
+import hashlib
 import json
 import math
 import re
@@ -147,8 +148,14 @@ def write_block(
             for each in outcomes
         ],
     }
-    text = json.dumps(content, allow_nan=False, separators=(",", ":"))
+    told = {"sha256": _digest(content), "results": content}
+    text = json.dumps(told, allow_nan=False, separators=(",", ":"))
     write_text(block_path(folder.path, block), text + "\n")
+
+
+def _digest(content: Any) -> str:  # Any: of JSON
+    text = json.dumps(content, allow_nan=False, separators=(",", ":"))
+    return hashlib.sha256(text.encode()).hexdigest()
 
 
 def read_block(folder: ComparisonFolder, block: Block) -> list[TrialOutcome] | None:
@@ -158,7 +165,10 @@ def read_block(folder: ComparisonFolder, block: Block) -> list[TrialOutcome] | N
         OSError: If its file is there and cannot be read.
     """
     try:
-        content = json.loads(read_whole(block_path(folder.path, block)))
+        told = json.loads(read_whole(block_path(folder.path, block)))
+        content = told["results"]
+        if told["sha256"] != _digest(content):
+            return None
         said = content["comparison"], content["cell"], content["columns"]
         outcomes = [
             TrialOutcome(
@@ -170,6 +180,8 @@ def read_block(folder: ComparisonFolder, block: Block) -> list[TrialOutcome] | N
             for each in content["trials"]
         ]
     except (FileNotFoundError, ValueError, KeyError, TypeError):
+        return None
+    except (OverflowError, RecursionError):  # what damage can make of numbers and lists
         return None
     wanted = folder.hash, cell_name(block.cell), list(COLUMNS)
     who = tuple(each.participant for each in outcomes)

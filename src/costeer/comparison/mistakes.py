@@ -11,6 +11,7 @@ from costeer.scenarios.mistakes import (
     DRIVER,
     MISTAKES,
     TRIGGER,
+    lacks_lane,
     parsed_mistakes,
 )
 from costeer.scenarios.reading import scenario_named
@@ -57,12 +58,19 @@ def contradiction(
         return "the method gives no torque, so nothing of it can go wrong"
     if whose == TRIGGER and not hears_triggers(method_named(entrant.given)):
         return "the method hears no trigger and no indicator that could go wrong"
-    lanes = [scenario_named(each.given).road.lanes for each in courses]
-    if told.kind == "wrong-side" and max(lanes) < 3:
+    if not any(happens_on(mistake, each) for each in courses):
         return "none of the roads has a lane on the wrong side"
     if told.kind == "head-lost" and intention != "network":
         return "nothing looks at the head; choose intention network"
     return ""
+
+
+def happens_on(mistake: str, course: Course) -> bool:
+    """Whether a mistake can happen on a road."""
+    if mistake == NONE:
+        return True
+    (told,) = parsed_mistakes([mistake])
+    return not lacks_lane(told, scenario_named(course.given).road.lanes)
 
 
 def with_mistake(setup: TrialSetup, mistake: str) -> TrialSetup:

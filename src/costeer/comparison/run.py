@@ -226,7 +226,8 @@ def _all_done(
     done: list[BlockDone] = []
     missing: list[Block] = []
     for block in plan.blocks:
-        if (there := read_block(folder, block)) is None:
+        there = read_block(folder, block)
+        if there is None or any(each.failure for each in there):
             missing.append(block)
             continue
         done.append(_block_done(there, resumed=True))

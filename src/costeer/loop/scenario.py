@@ -35,6 +35,7 @@ from costeer.plant.parameters import (
 from costeer.scenarios.definition import Scenario
 from costeer.scenarios.mistakes import (
     Mistake,
+    lacks_lane,
     parsed_mistakes,
     values_of,
     wrong_in,
@@ -296,8 +297,10 @@ def trial_mistakes(setup: TrialSetup) -> tuple[Mistake, ...]:
     Raises:
         ValueError: If one is not known, out of range, or stands twice.
     """
-    mistakes = scenario_named(setup.scenario).mistakes + parsed_mistakes(setup.mistakes)
-    for _, text in wrong_in(mistakes):
+    scenario = scenario_named(setup.scenario)
+    mistakes = scenario.mistakes + parsed_mistakes(setup.mistakes)
+    impossible = (lacks_lane(each, scenario.road.lanes) for each in mistakes)
+    for text in (*(told for _, told in wrong_in(mistakes)), *filter(None, impossible)):
         raise ValueError(text)
     return mistakes
 

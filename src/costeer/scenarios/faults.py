@@ -25,7 +25,7 @@ from costeer.scenarios.definition import (
     speed_of,
 )
 from costeer.scenarios.limits import Fault, Place, out_of_range
-from costeer.scenarios.mistakes import wrong_in
+from costeer.scenarios.mistakes import lacks_lane, wrong_in
 
 FASTEST_CORNERING = 3.0
 """Lateral acceleration above which a curve is too tight for its speed [m/s²]: tyres and
@@ -48,6 +48,9 @@ def faults(scenario: Scenario) -> Iterator[Fault]:
     yield from _of_zones(scenario)
     for place, text in wrong_in(scenario.mistakes):
         yield Fault(("mistakes", place), text)
+    for place, mistake in enumerate(scenario.mistakes):
+        if text := lacks_lane(mistake, scenario.road.lanes):
+            yield Fault(("mistakes", place), text)
 
 
 def _of_names(scenario: Scenario) -> Iterator[Fault]:

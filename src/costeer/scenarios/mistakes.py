@@ -22,11 +22,11 @@ class Mistake(NamedTuple):
 
     Attributes:
         kind: One of `MISTAKES`.
-        size: In the unit of the kind; NaN: the usual one.
+        size: In the unit of the kind; None: the usual one.
     """
 
     kind: str
-    size: float = math.nan
+    size: float | None = None
 
 
 class MistakeKind(NamedTuple):
@@ -67,7 +67,9 @@ MISTAKES: dict[str, MistakeKind] = {
         (("mistakes.false_trigger", 1.0),),
     ),
     "missed-trigger": MistakeKind(
-        "no trigger ever arrives", TRIGGER, "mistakes.missed_trigger"
+        "no trigger of the driver's own intention arrives",
+        TRIGGER,
+        "mistakes.missed_trigger",
     ),
     "late-trigger": MistakeKind(
         "triggers arrive {} late",
@@ -198,8 +200,7 @@ MISTAKES: dict[str, MistakeKind] = {
 
 def size_of(mistake: Mistake) -> float:
     """Size of a mistake, the usual one if it has none of its own."""
-    usual = MISTAKES[mistake.kind].size
-    return usual if math.isnan(mistake.size) else mistake.size
+    return MISTAKES[mistake.kind].size if mistake.size is None else mistake.size
 
 
 def described(mistake: Mistake) -> str:
@@ -228,7 +229,9 @@ def wrong_in(mistakes: Sequence[Mistake]) -> Iterator[tuple[int, str]]:
             known = ", ".join(MISTAKES)
             yield place, f"there is no mistake {name!r}{close}; give one of {known}"
             continue
-        if not (math.isnan(size) or kind.low <= size <= kind.high):
+        if size is not None and not kind.unit:
+            yield place, f"{name} has no size; leave it out"
+        elif size is not None and not kind.low <= size <= kind.high:
             unit = "" if kind.unit == "-" else f" {kind.unit}"
             told = f"{name} has size {size:g}; give a number from {kind.low:.3g} to"
             yield place, f"{told} {kind.high:g}{unit}"
@@ -242,6 +245,18 @@ def wrong_in(mistakes: Sequence[Mistake]) -> Iterator[tuple[int, str]]:
                 break
 
 
+def lacks_lane(mistake: Mistake, num_lanes: float) -> str:
+    """Why a mistake can never happen on a road; empty if it can.
+
+    Args:
+        mistake: Known.
+        num_lanes: Of the road.
+    """
+    if mistake.kind != "wrong-side" or num_lanes >= 3:
+        return ""
+    return f"wrong-side needs three lanes or more; this road has {num_lanes:g}"
+
+
 def parsed_mistakes(words: Iterable[str]) -> tuple[Mistake, ...]:
     """Mistakes from words as `late-trigger` or `late-trigger=0.8`.
 
@@ -252,12 +267,12 @@ def parsed_mistakes(words: Iterable[str]) -> tuple[Mistake, ...]:
     for word in words:
         name, equals, text = word.partition("=")
         try:
-            size = float(text) if equals else math.nan
+            size = float(text) if equals else None
         except ValueError:
             raise ValueError(
                 f"'{word}' has no number after =; give one, as late-trigger=0.8"
             ) from None
-        if equals and not math.isfinite(size):
+        if size is not None and not math.isfinite(size):
             raise ValueError(f"'{word}' has no finite size; give a number")
         given.append(Mistake(name.strip(), size))
     for _, text in wrong_in(given):
