@@ -33,7 +33,7 @@ def start(page: Page, console: Page) -> None:
     """Say that one is ready, and start at the console."""
     page.get_by_role("button", name="I am ready").click()
     wait_for(console, "document.getElementById('facts').textContent.includes('drives')")
-    # A busy computer can let the loop stand still before anybody drives: that is a fault.
+    # On a busy computer the loop can stand still before anybody drives: a fault.
     deadline = time.monotonic() + PATIENCE
     while not console.locator("#start:enabled").count():
         assert time.monotonic() < deadline, console.locator("body").inner_text()
