@@ -179,7 +179,7 @@ def test_system_error_says_what_the_system_says(
     [
         (["--participants", "abc"], "'--participants': 'abc' is not a whole number"),
         (["--participants", "1.5"], "'--participants': '1.5' is not a whole number"),
-        (["--length", "12,5"], "'--length': '12,5' is not a number, as 12.5"),
+        (["--length", "12,5"], "'--length': '12,5' is not a length; give metres"),
         (["--speed", "fast"], "'fast' is not a speed; give metres per second"),
         (["--colour"], "No such option: --colour"),
     ],

@@ -96,6 +96,10 @@ class Unsendable(Exception):
     def __init__(self, one: int, two: int) -> None:
         super().__init__(f"{one} and {two}")
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        # Libraries of clusters teach pickle to send exceptions; this one stays here.
+        raise TypeError
+
 
 def test_an_error_that_cannot_be_sent_is_told_in_words() -> None:
     def work(_: int) -> int:
