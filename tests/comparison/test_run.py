@@ -279,3 +279,21 @@ def test_workers_elsewhere_write_the_same_bytes(tmp_path: Path) -> None:
     run_comparison(tmp_path / "threads", short, jobs=2, report=None)
     run_comparison(tmp_path / "workers", short, cluster="local:2", report=None)
     assert contents(tmp_path / "workers") == contents(tmp_path / "threads")
+
+
+def test_a_trial_that_failed_is_tried_again(
+    tmp_path: Path, whole: dict[str, bytes]
+) -> None:
+    def failing(setup: TrialSetup) -> TrialRecord:
+        if setup.participant == 3 and setup.length == SMALL.length:
+            raise RuntimeError("out of luck")
+        return made_up(setup)
+
+    first = run_comparison(tmp_path, SMALL, jobs=1, report=None, simulate=failing)
+    assert first.num_failed == 4
+    again = run_comparison(tmp_path, SMALL, jobs=1, report=None, simulate=made_up)
+    assert (again.num_failed, again.num_resumed) == (0, NUM_TRIALS - 4 * BLOCK)
+    found = contents(tmp_path)
+    assert {n: c for n, c in found.items() if n.startswith("results")} == {
+        n: c for n, c in whole.items() if n.startswith("results")
+    }

@@ -199,3 +199,27 @@ def test_jobs_are_of_this_computer_only() -> None:
         workers(2, "local:2"),
     ):
         pass
+
+
+class OneByOne(Backwards):
+    """An engine that counts the blocks it takes."""
+
+    taken = 0
+
+    def answers(
+        self, work: Callable[[Block], Answer], blocks: Iterator[Block]
+    ) -> Iterator[Answer]:
+        """In order, the next only when the last was given."""
+        for block in blocks:
+            self.taken += 1
+            yield work(block)
+
+
+def test_no_block_is_sent_after_one_that_failed() -> None:
+    def work(task: int) -> int:
+        raise ValueError(task)
+
+    engine = OneByOne()
+    with pytest.raises(JobsStoppedError):
+        run_jobs(work, range(10_000), engine, ignore)
+    assert engine.taken == 1
