@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import time
 from collections.abc import Callable
 from pathlib import Path
 
@@ -27,6 +28,13 @@ def made_up(setup: TrialSetup) -> TrialRecord:
     return synthetic_record(
         setup.condition, setup.participant, setup.seed, length=float(setup.length)
     )
+
+
+def held_up(setup: TrialSetup, gate: str) -> TrialRecord:
+    """As `made_up`, but after the first ten participants only once a file is there."""
+    while setup.participant > 10 and not Path(gate).exists():
+        time.sleep(0.01)
+    return made_up(setup)
 
 
 def plain_report(folder: Path, tell: Callable[[str], None] = print) -> None:

@@ -18,6 +18,7 @@ import pytest
 
 import costeer
 from costeer.scale.cluster import workers
+from costeer.scale.jobs import run_jobs
 from costeer.scale.shard import Shard
 from costeer.study.configuration import StudySettings
 from costeer.study.merge import merge_study
@@ -104,19 +105,24 @@ def test_killed_workers_lose_nothing(
     assert tables(tmp_path / "killed") == tables(tmp_path / "whole")
 
 
+GATE = "gate"
+"""The file without which a study that `started` does not come to its end."""
+
 CANCELLED = """
 import sys
 from functools import partial
 from costeer.cli import main
 from costeer.study import run
-from tests.study.fakes import made_up, plain_report
+from tests.study.fakes import held_up, plain_report
 
 if __name__ == "__main__":
     run.full_report = plain_report
-    run.run_study = partial(run.run_study, simulate=made_up)
+    run.run_study = partial(
+        run.run_study, simulate=partial(held_up, gate=sys.argv[2])
+    )
     sys.exit(main(["study", "--out", sys.argv[1], "--participants", "60",
         "--conditions", "manual,strong-rapid,weak-gentle", "--intention", "scripted",
-        "--length", "1800", *sys.argv[2:]]))
+        "--length", "1800", *sys.argv[3:]]))
 """
 
 
@@ -126,7 +132,12 @@ def started(tmp_path: Path, *words: str) -> Iterator[subprocess.Popen[str]]:
     script = tmp_path / "script.py"
     script.write_text(CANCELLED)
     with subprocess.Popen(
-        [sys.executable, str(script), str(tmp_path / "out"), *words],
+        [
+            sys.executable,
+            str(script),
+            *(str(tmp_path / name) for name in ("out", GATE)),
+            *words,
+        ],
         cwd=ROOT,
         env={**os.environ, "PYTHONPATH": os.pathsep.join([str(ROOT), *sys.path])},
         stdout=subprocess.DEVNULL,
@@ -149,6 +160,7 @@ def test_ctrl_c_reaches_workers_too_and_loses_nothing(tmp_path: Path) -> None:
             lambda: process.poll() is not None or any(results.glob("*.json")), LONG
         )
         os.killpg(process.pid, signal.SIGINT)
+        (tmp_path / GATE).touch()
         _, said = process.communicate(timeout=LONG)
     assert process.returncode == 130, said
     kept = len(list(results.glob("*.json")))
@@ -188,7 +200,7 @@ def scheduler(
             return process
 
         server = start(first)
-        wait_for(file.exists, LONG)
+        wait_for(lambda: file.exists() and file.read_text().endswith("}"), LONG)
         start(second)
         yield json.loads(file.read_text())["address"], server
 
@@ -203,6 +215,8 @@ def test_a_lost_scheduler_is_told_and_loses_nothing(tmp_path: Path) -> None:
             lambda: process.poll() is not None or any(records.glob("*.parquet")), LONG
         )
         server.kill()
+        server.wait(LONG)
+        (tmp_path / GATE).touch()
         _, said = process.communicate(timeout=LONG)
     assert process.returncode == 2, said
     last = said.splitlines()[-1]
@@ -210,6 +224,7 @@ def test_a_lost_scheduler_is_told_and_loses_nothing(tmp_path: Path) -> None:
     assert "of 180 trials are done and kept in" in last
     assert "run the same command again to go on from there" in last
     assert "Traceback" not in said
+    assert "ERROR" not in said
     assert any(records.glob("*.parquet"))
 
 
@@ -239,3 +254,15 @@ def test_a_worker_of_another_costeer_is_refused_before_there_is_a_folder(
     ):
         run_study(tmp_path / "out", SMALL, scale=Scale(cluster=address))
     assert not (tmp_path / "out").exists()
+
+
+def where(_: int) -> int:
+    """The process that does a task."""
+    return os.getpid()
+
+
+def test_a_single_worker_works_elsewhere_too() -> None:
+    with workers(None, "local:1") as engine:
+        did = run_jobs(where, range(20), engine, lambda _: None)
+    assert os.getpid() not in did
+    assert len(set(did)) == 1

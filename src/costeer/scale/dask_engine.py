@@ -57,11 +57,15 @@ class _Calls:
 
 
 class _Backend(DaskDistributedBackend):  # type: ignore[misc]  # joblib has no types
-    """joblib's, but for two things.
+    """joblib's, but for three things.
 
-    It would keep what it sends on one worker, and lose it with that worker; and wait
-    for ever for a block that Dask has given up.
+    It would keep what it sends on one worker, and lose it with that worker; wait for
+    ever for a block that Dask has given up; and work here if there is one worker.
     """
+
+    def effective_n_jobs(self, n_jobs: int) -> int:
+        """How many blocks may be under way; with 1 joblib would do them itself."""
+        return max(2, int(super().effective_n_jobs(n_jobs)))
 
     async def _to_func_args(self, func: Any) -> Any:  # Any: joblib's own
         return _Calls(), list(func.items)
@@ -178,7 +182,13 @@ def dask_workers(cluster: str) -> Iterator[DaskEngine]:
 
 def _hush() -> None:
     """Let costeer say what happens, not the loggers of Dask."""
-    for name in ("distributed", "tornado.application", "asyncio"):
+    for name in (
+        "distributed",
+        "distributed.client",
+        "distributed.gc",
+        "tornado.application",
+        "asyncio",
+    ):
         logging.getLogger(name).setLevel(logging.CRITICAL + 1)
 
 

@@ -36,7 +36,10 @@ class RayEngine:
     def answers(
         self, work: Callable[[Block], Answer], blocks: Iterator[Block]
     ) -> Iterator[Answer]:
-        """What comes of the blocks, in their order."""
+        """What comes of the blocks, in their order.
+
+        With a single worker joblib does them in this process.
+        """
         number = self.num_workers
         with (
             parallel_config(backend="ray"),
