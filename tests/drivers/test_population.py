@@ -16,11 +16,12 @@ from costeer.drivers.population import (
     POPULATION_VERSION,
     REACTION_SPREAD,
     PopulationParameters,
-    Traits,
     driver_with,
     hands_off,
     participant_driver,
 )
+from costeer.drivers.population import USUAL as USUAL_DRIVERS
+from costeer.drivers.traits import Traits
 from tests.drivers.samples import SPEED
 
 NUM_DRIVERS = 400
@@ -154,7 +155,8 @@ def test_the_population_says_its_version() -> None:
 def test_no_spread_gives_the_median_driver() -> None:
     none = PopulationParameters(*([0.0] * len(PopulationParameters._fields)))
     usual = DriverParameters()
-    drawn_one = participant_driver(1, 1, SPEED, none)
+    alike = USUAL_DRIVERS._replace(spreads=none)
+    drawn_one = participant_driver(1, 1, SPEED, alike)
     # Reaction times in an emergency are drawn apart, with a spread of their own.
     assert drawn_one._replace(evasion=usual.evasion) == usual
 

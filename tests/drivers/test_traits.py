@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from costeer.drivers.population import (
+from costeer.drivers.traits import (
     FACTORS,
     Traits,
     correlation_matrix,

@@ -134,7 +134,8 @@ def noise_of(num_steps: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     state, noises, answers = vision.initial_state(), [], []
     for near, motor in np.random.default_rng(1).normal(size=(num_steps, 2)).tolist():
         draws = VisionNoise(near=near, motor=motor)
-        state, answer = vision.step(PARAMETERS, state, 0.0, 0.0, SPEED, draws, DT)
+        state, asked = vision.step(PARAMETERS, state, 0.0, 0.0, SPEED, draws, DT)
+        answer = vision.performed(PARAMETERS, state, asked, 0.0)
         noises.append((state.near_noise, state.motor_noise))
         answers.append(answer)
     return np.array(noises[600:]).T, np.array(answers[600:])
@@ -151,16 +152,20 @@ def test_noise_settles_to_its_deviation_and_correlation() -> None:
 
 
 def test_noise_of_the_hand_is_added_after_the_delay() -> None:
-    state, answer = vision.step(
-        PARAMETERS,
-        vision.initial_state(),
-        0.0,
-        0.0,
-        SPEED,
-        VisionNoise(near=0.0, motor=1.0),
-        DT,
-    )
-    assert answer == state.motor_noise != 0.0
+    start, draws = vision.initial_state(), VisionNoise(near=0.0, motor=1.0)
+    state, answer = vision.step(PARAMETERS, start, 0.0, 0.0, SPEED, draws, DT)
+    assert answer == 0.0
+    assert vision.performed(PARAMETERS, state, answer, 0.0) == state.motor_noise != 0.0
+
+
+@pytest.mark.parametrize("angle", [0.0, 0.05, -0.2])
+def test_noise_of_the_hand_grows_with_what_it_does(angle: float) -> None:
+    # Standard deviation: that at rest and a tenth of the angle, whoever plans it.
+    parameters = PARAMETERS._replace(motor_noise=0.01, signal_noise=0.1)
+    one = vision.initial_state()._replace(motor_noise=0.01)  # standard deviation
+    for seen, planned in ((angle, 0.0), (0.0, angle), (angle / 2.0, angle / 2.0)):
+        done = vision.performed(parameters, one, seen, planned)
+        assert done - angle == pytest.approx(0.01 + 0.1 * abs(angle))
 
 
 def test_a_car_on_its_aim_keeps_the_wheel_straight() -> None:

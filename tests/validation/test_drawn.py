@@ -9,12 +9,8 @@ import pytest
 
 from costeer.base.packing import leaf_names, packed
 from costeer.drivers.driver import DriverParameters
-from costeer.drivers.population import (
-    PopulationParameters,
-    Traits,
-    correlation_matrix,
-    participant_driver,
-)
+from costeer.drivers.population import PopulationParameters, participant_driver
+from costeer.drivers.traits import Traits, correlation_matrix
 from costeer.validation.drawn import (
     DISTRIBUTIONS,
     LOG_NORMAL,

@@ -8,7 +8,7 @@ from functools import cache
 
 import pytest
 
-from costeer.drivers.population import FACTORS
+from costeer.drivers.traits import FACTORS
 from costeer.validation.drawn import drawn_drivers
 from costeer.validation.drawn_figure import (
     Population,

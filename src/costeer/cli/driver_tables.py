@@ -72,7 +72,7 @@ def show_drawn(asked: Asked, speed: float) -> None:
 
 
 def _print_drawn(asked: Asked, drawn: list[dict[str, float]]) -> None:
-    from costeer.drivers.population import FACTORS
+    from costeer.drivers.traits import FACTORS
     from costeer.pages.units import shown
     from costeer.validation.drawn import spreads
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 from costeer.base import array as xp
 from costeer.base.array import Flag, Real, compiled
 from costeer.drivers import (
@@ -13,6 +15,7 @@ from costeer.drivers import (
     learning,
     longitudinal,
     reliance,
+    tolerance,
     tracking,
     vision,
 )
@@ -33,6 +36,7 @@ from costeer.drivers.interface import (
 from costeer.drivers.longitudinal import LongitudinalState
 from costeer.drivers.overtaking import Surroundings
 from costeer.drivers.reliance import RelianceState
+from costeer.drivers.tolerance import ToleranceState
 from costeer.drivers.tracking import TrackingState
 from costeer.drivers.vision import VisionNoise, VisionState
 from costeer.drivers.whole import DriverParameters as DriverParameters
@@ -139,6 +143,22 @@ def swerve(
     return aimed._replace(path=path)
 
 
+class Sight(NamedTuple):
+    """What the eyes make of a step.
+
+    Attributes:
+        eyes: Their state.
+        asked: Steering-wheel angle that is seen to be needed [rad].
+        planned: Angle ahead of it, for the own path's curvature [rad].
+        share: Of both that a driver of a slow car takes [-].
+    """
+
+    eyes: VisionState
+    asked: Real
+    planned: Real
+    share: Real
+
+
 @compiled
 def see(
     parameters: DriverParameters,
@@ -148,8 +168,8 @@ def see(
     aimed: TrackingState,
     noise: DriverNoise,
     dt: Real,
-) -> tuple[VisionState, Real]:
-    """Turn what is seen into an intended steering-wheel angle [rad]."""
+) -> Sight:
+    """Turn what is seen into the steering-wheel angle that it needs."""
     eyes = parameters.vision
     speed = xp.maximum(measurement.longitudinal_velocity, SLOWEST_SEEN)
     near_distance = xp.minimum(speed * eyes.near_time, eyes.sight)
@@ -160,7 +180,7 @@ def see(
         near_distance,
         xp.minimum(speed * eyes.anticipation_time, eyes.sight),
     )
-    new_state, asked = vision.step(
+    seen, asked = vision.step(
         eyes,
         state.vision,
         vision.far_angle(measurement, wanted.far_slope, wanted.far_turn),
@@ -169,9 +189,28 @@ def see(
         VisionNoise(near=noise.near, motor=noise.motor),
         dt,
     )
-    planned = vision.planned_angle(eyes, knowledge.car, speed, wanted.far_curvature)
     moves = xp.minimum(measurement.longitudinal_velocity / SLOWEST_SEEN, 1.0)
-    return new_state, (asked + planned) * xp.maximum(moves, 0.0)
+    return Sight(
+        eyes=seen,
+        asked=asked,
+        planned=vision.planned_angle(eyes, knowledge.car, speed, wanted.far_curvature),
+        share=xp.maximum(moves, 0.0),
+    )
+
+
+@compiled
+def intend(
+    parameters: DriverParameters,
+    state: DriverState,
+    sight: Sight,
+    watches: Flag,
+    dt: Real,
+) -> tuple[ToleranceState, Real]:
+    """The steering-wheel angle that the hands go to [rad]: what is not let go."""
+    own = parameters.tolerance, state.tolerance
+    kept = tolerance.step(*own, sight.asked, watches, dt)
+    eyes = parameters.vision, sight.eyes
+    return kept, vision.performed(*eyes, kept.intended, sight.planned) * sight.share
 
 
 @compiled
@@ -307,8 +346,10 @@ def act(
     head = look(parameters, state, decided, direction, noise, dt)
     aimed, plan = aim(parameters, state, knowledge, measurement, decided, noise, dt)
     aimed = swerve(parameters, knowledge, measurement, aimed, evading)
-    eyes, intended = see(parameters, state, knowledge, measurement, aimed, noise, dt)
     steered = decision.steered_to(decided, direction)
+    sight = see(parameters, state, knowledge, measurement, aimed, noise, dt)
+    watches = (steered != 0.0) | evading.active
+    kept, intended = intend(parameters, state, sight, watches, dt)
     felt, goal = state.reliance.felt_guidance, aimed.path.y5
     led = reliance.leads(parameters.reliance, measurement, felt, goal, steered)
     hands, command = feel(parameters, state, knowledge, perception, intended, led, dt)
@@ -323,7 +364,7 @@ def act(
     foot = brake(parameters, state, foot, evading, measurement, dt)
     lever = parameters.indicator, state.indicator, decided, steered
     new_state = DriverState(
-        vision=eyes,
+        vision=sight.eyes,
         reliance=hands,
         tracking=aimed,
         decision=decided,
@@ -333,5 +374,6 @@ def act(
         indicator=indicating.step(*lever, noise.indicator_uniform, dt),
         correcting=plan,
         learning=learning.step(*known, dt),
+        tolerance=kept,
     )
     return new_state, acted(parameters, new_state, knowledge, measurement, command)

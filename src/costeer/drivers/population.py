@@ -1,17 +1,15 @@
 """The population of virtual drivers: how they differ, drawn by seed and participant.
 
-Calibrated on manual driving only (docs/decisions/0009-drivers-frozen.md). A driver is
-a vector of correlated standard normal traits; positive quantities are log-normal in
-their trait, shares and signed quantities normal and clipped.
+Calibrated on manual driving only (docs/decisions/0009-drivers-frozen.md). Positive
+quantities are log-normal in their trait, shares and signed quantities normal and
+clipped.
 """
 
 from __future__ import annotations
 
-from functools import cache
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from costeer.base.array import Real
 from costeer.drivers.arm import ArmParameters
@@ -23,12 +21,12 @@ from costeer.drivers.longitudinal import LongitudinalParameters
 from costeer.drivers.overtaking import DecisionParameters
 from costeer.drivers.reliance import RelianceParameters
 from costeer.drivers.tracking import TrackingParameters
+from costeer.drivers.traits import Traits, drawn_traits
 from costeer.drivers.vision import VisionParameters
 
 POPULATION_VERSION = "2"
 """Changes when a parameter, a spread or a correlation of the drivers does."""
 
-_POPULATION_STREAM = 0
 _EVASION_STREAM = 8
 
 REACTION_SPREAD = 0.25
@@ -39,126 +37,8 @@ FASTEST_REACTION = 0.3
 """Shortest reaction time [s]. Source: spec section 12."""
 
 
-class Traits(NamedTuple):
-    """What differs between drivers, each standard normal over the population.
-
-    Attributes:
-        noise: Of seeing and steering.
-        lead_time: Of the near point's lead.
-        wander: Of the aim.
-        lane_bias: Preferred place in the lane.
-        stiffness: Of the arms.
-        arm_inertia: Of the arms.
-        arm_damping: Of the arms.
-        reliance: On guidance that agrees.
-        cocontraction: Against guidance that opposes.
-        duration: Of planned lane changes.
-        headway: At which overtaking is decided, and at which the return is.
-        patience: Behind a leader who is hardly slower.
-        shoulder: Share of looks over the shoulder.
-        glance: Size of glances.
-        preferred_speed: Against the suggested one.
-        overtaking_speed: Speeding up to overtake.
-    """
-
-    noise: Real
-    lead_time: Real
-    wander: Real
-    lane_bias: Real
-    stiffness: Real
-    arm_inertia: Real
-    arm_damping: Real
-    reliance: Real
-    cocontraction: Real
-    duration: Real
-    headway: Real
-    patience: Real
-    shoulder: Real
-    glance: Real
-    preferred_speed: Real
-    overtaking_speed: Real
-
-
-class Factor(NamedTuple):
-    """What several traits have in common.
-
-    Two traits of a factor are correlated by the product of their loadings; traits
-    without a common factor are independent.
-
-    Attributes:
-        name: Of the factor.
-        loadings: Names of traits and their correlation with the factor [-].
-        source: Where it is from, or why it is assumed.
-    """
-
-    name: str
-    loadings: dict[str, Real]
-    source: str
-
-
-FACTORS = (
-    Factor(
-        name="style",
-        loadings={
-            "preferred_speed": 0.5,
-            "overtaking_speed": 0.5,
-            "headway": -0.6,
-            "duration": -0.4,
-            "patience": -0.4,
-            "shoulder": -0.3,
-        },
-        source="Itkonen et al. (2017): one axis from calm to intensive driving; "
-        "loadings assumed",
-    ),
-    Factor(
-        name="arms",
-        loadings={"arm_inertia": 0.6, "arm_damping": 0.7, "stiffness": 0.6},
-        source="assumed: all three grow with the arms and their activation",
-    ),
-    Factor(
-        name="trust",
-        loadings={"reliance": 0.55, "cocontraction": -0.55},
-        source="assumed: who leaves more to the guidance stiffens less against it",
-    ),
-)
-"""Traits that go together. Noise and wander do not: standard deviation of lane
-position and steering activity are hardly correlated between drivers."""
-
-
-@cache
-def loadings() -> NDArray[np.float64]:
-    """Loadings of the traits on the factors, shape `(trait, factor)`."""
-    matrix = np.zeros((len(Traits._fields), len(FACTORS)))
-    for column, factor in enumerate(FACTORS):
-        for name, loading in factor.loadings.items():
-            matrix[Traits._fields.index(name), column] = loading
-    return matrix
-
-
-def correlation_matrix() -> NDArray[np.float64]:
-    """Correlations of the traits, shape `(trait, trait)`."""
-    common = loadings() @ loadings().T
-    return np.asarray(common + np.diag(1.0 - np.diag(common)), dtype=np.float64)
-
-
-def drawn_traits(seed: int, participant: int) -> Traits:
-    """Traits of the driver with this number.
-
-    Args:
-        seed: Of the population; other seeds are other people.
-        participant: Number of the driver.
-    """
-    entropy = [seed, _POPULATION_STREAM, participant]
-    generator = np.random.Generator(np.random.PCG64(np.random.SeedSequence(entropy)))
-    own = generator.standard_normal(len(Traits._fields))
-    common = generator.standard_normal(len(FACTORS))
-    explained = np.sum(loadings() ** 2, axis=1)
-    mixed = np.sqrt(1.0 - explained) * own + loadings() @ common
-    return Traits(*mixed.tolist())
-
-
 class PopulationParameters(NamedTuple):
-    """Medians and spreads between drivers.
+    """Spreads between drivers.
 
     `_spread` is the standard deviation of the logarithm for positive quantities, the
     standard deviation itself for the others.
@@ -206,6 +86,26 @@ class PopulationParameters(NamedTuple):
     glance_spread: Real = 0.1
 
 
+class Population(NamedTuple):
+    """People of one kind.
+
+    Attributes:
+        name: Of the driver model: small letters, digits, hyphens.
+        version: Changes when a parameter, a spread or a correlation does.
+        usual: The driver without any trait.
+        spreads: Between drivers.
+    """
+
+    name: str
+    version: str
+    usual: DriverParameters = DriverParameters()
+    spreads: PopulationParameters = PopulationParameters()
+
+
+USUAL = Population(name="virtual", version=POPULATION_VERSION)
+"""The population that ships with costeer."""
+
+
 def _positive(median: Real, spread: Real, trait: Real) -> Real:
     """Log-normal with this median."""
     return float(median * np.exp(spread * trait))
@@ -220,7 +120,7 @@ def participant_driver(
     seed: int,
     participant: int,
     speed: Real,
-    population: PopulationParameters | None = None,
+    population: Population = USUAL,
 ) -> DriverParameters:
     """Return the driver with this number.
 
@@ -228,46 +128,49 @@ def participant_driver(
         seed: Of the population; other seeds are other people.
         participant: Number of the driver.
         speed: Suggested speed [m/s].
-        population: Spreads between drivers.
+        population: Who is drawn from.
     """
     drawn = driver_with(drawn_traits(seed, participant), speed, population)
-    return drawn._replace(evasion=_evasion(seed, participant))
+    usual = population.usual.evasion
+    return drawn._replace(evasion=_evasion(usual, seed, participant))
 
 
-def _evasion(seed: int, participant: int) -> EvasionParameters:
+def _evasion(
+    usual: EvasionParameters, seed: int, participant: int
+) -> EvasionParameters:
     """How this driver meets an emergency; drawn apart from all other traits."""
     entropy = [seed, _EVASION_STREAM, participant]
     generator = np.random.Generator(np.random.PCG64(np.random.SeedSequence(entropy)))
     trait = float(generator.standard_normal())
-    usual = EvasionParameters()
     reaction = _positive(usual.reaction_time, REACTION_SPREAD, trait)
     return usual._replace(reaction_time=max(reaction, FASTEST_REACTION))
 
 
 def driver_with(
-    traits: Traits, speed: Real, population: PopulationParameters | None = None
+    traits: Traits, speed: Real, population: Population = USUAL
 ) -> DriverParameters:
     """Return the driver who has these traits.
 
     Args:
         traits: 0 for the usual driver, 1 for one standard deviation more.
         speed: Suggested speed [m/s].
-        population: Spreads between drivers.
+        population: Who is drawn from.
     """
-    spread = population or PopulationParameters()
-    return DriverParameters(
-        vision=_vision(traits, spread),
-        arm=_arm(traits, spread),
-        reliance=_reliance(traits, spread),
-        tracking=_tracking(traits, spread),
-        decision=_decision(traits, spread),
-        gaze=_gaze(traits, spread),
-        longitudinal=_longitudinal(traits, spread, speed),
+    usual, spread = population.usual, population.spreads
+    return usual._replace(
+        vision=_vision(usual.vision, traits, spread),
+        arm=_arm(usual.arm, traits, spread),
+        reliance=_reliance(usual.reliance, traits, spread),
+        tracking=_tracking(usual.tracking, traits, spread),
+        decision=_decision(usual.decision, traits, spread),
+        gaze=_gaze(usual.gaze, traits, spread),
+        longitudinal=_longitudinal(usual.longitudinal, traits, spread, speed),
     )
 
 
-def _vision(traits: Traits, spread: PopulationParameters) -> VisionParameters:
-    usual = VisionParameters()
+def _vision(
+    usual: VisionParameters, traits: Traits, spread: PopulationParameters
+) -> VisionParameters:
     noise = _positive(1.0, spread.near_noise_spread, traits.noise)
     return usual._replace(
         near_noise=usual.near_noise * noise,
@@ -278,8 +181,9 @@ def _vision(traits: Traits, spread: PopulationParameters) -> VisionParameters:
     )
 
 
-def _arm(traits: Traits, spread: PopulationParameters) -> ArmParameters:
-    usual = ArmParameters()
+def _arm(
+    usual: ArmParameters, traits: Traits, spread: PopulationParameters
+) -> ArmParameters:
     stiffness = _positive(usual.stiffness, spread.stiffness_spread, traits.stiffness)
     return usual._replace(
         stiffness=float(np.clip(stiffness, 8.0, 20.0)),
@@ -288,8 +192,9 @@ def _arm(traits: Traits, spread: PopulationParameters) -> ArmParameters:
     )
 
 
-def _reliance(traits: Traits, spread: PopulationParameters) -> RelianceParameters:
-    usual = RelianceParameters()
+def _reliance(
+    usual: RelianceParameters, traits: Traits, spread: PopulationParameters
+) -> RelianceParameters:
     tense = _positive(
         usual.cocontraction, spread.cocontraction_spread, traits.cocontraction
     )
@@ -301,8 +206,9 @@ def _reliance(traits: Traits, spread: PopulationParameters) -> RelianceParameter
     )
 
 
-def _tracking(traits: Traits, spread: PopulationParameters) -> TrackingParameters:
-    usual = TrackingParameters()
+def _tracking(
+    usual: TrackingParameters, traits: Traits, spread: PopulationParameters
+) -> TrackingParameters:
     return usual._replace(
         wander_deviation=_positive(
             usual.wander_deviation, spread.wander_deviation_spread, traits.wander
@@ -313,8 +219,9 @@ def _tracking(traits: Traits, spread: PopulationParameters) -> TrackingParameter
     )
 
 
-def _decision(traits: Traits, spread: PopulationParameters) -> DecisionParameters:
-    usual = DecisionParameters()
+def _decision(
+    usual: DecisionParameters, traits: Traits, spread: PopulationParameters
+) -> DecisionParameters:
     room = _positive(1.0, spread.headway_spread, traits.headway)
     return usual._replace(
         change_duration=_positive(
@@ -333,17 +240,20 @@ def _decision(traits: Traits, spread: PopulationParameters) -> DecisionParameter
     )
 
 
-def _gaze(traits: Traits, spread: PopulationParameters) -> GazeParameters:
-    usual = GazeParameters()
+def _gaze(
+    usual: GazeParameters, traits: Traits, spread: PopulationParameters
+) -> GazeParameters:
     return usual._replace(
         amplitude=_positive(usual.amplitude, spread.glance_spread, traits.glance)
     )
 
 
 def _longitudinal(
-    traits: Traits, spread: PopulationParameters, speed: Real
+    usual: LongitudinalParameters,
+    traits: Traits,
+    spread: PopulationParameters,
+    speed: Real,
 ) -> LongitudinalParameters:
-    usual = LongitudinalParameters()
     faster = _between(
         usual.overtaking_speed,
         spread.overtaking_speed_spread,

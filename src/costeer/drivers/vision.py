@@ -40,6 +40,9 @@ class VisionParameters(NamedTuple):
         motor_noise: Standard deviation of the intended angle [rad]. Source: assumed,
             as above.
         noise_time: Correlation time of both noises [s]. Source: assumed.
+        signal_noise: What `motor_noise` grows by per intended angle, as motor noise
+            does with the torque that is given (Harris and Wolpert 1998) [-]. Source:
+            assumed, 0 in population 2.
         sight: How far the road can be seen [m]. Source: assumed, no fog.
     """
 
@@ -54,6 +57,7 @@ class VisionParameters(NamedTuple):
     near_noise: Real = 0.008
     motor_noise: Real = 0.0095
     noise_time: Real = 0.35
+    signal_noise: Real = 0.0
     sight: Real = 1000.0
 
 
@@ -158,6 +162,8 @@ def step(
 ) -> tuple[VisionState, Real]:
     """Process what is seen; return the state and the angle it asks for [rad].
 
+    The state has the hand's noise of this step; `performed` adds it.
+
     Args:
         parameters: Gains, lead-lag, delay, noise.
         state: Of vision.
@@ -183,4 +189,21 @@ def step(
     new_state = VisionState(
         delayed=delayed, lagged=lagged, near_noise=near_noise, motor_noise=motor_noise
     )
-    return new_state, angle + motor_noise
+    return new_state, angle
+
+
+@compiled
+def performed(
+    parameters: VisionParameters, state: VisionState, intended: Real, planned: Real
+) -> Real:
+    """The angle that the hand goes to, with its own noise [rad].
+
+    Args:
+        parameters: Size of the noise.
+        state: Of vision, with the noise of this step.
+        intended: After what is seen [rad].
+        planned: Ahead of it [rad].
+    """
+    usual = xp.maximum(parameters.motor_noise, 1e-9)
+    growth = parameters.signal_noise * xp.absolute(intended + planned) / usual
+    return intended + state.motor_noise * (1.0 + growth) + planned

@@ -14,6 +14,7 @@ from costeer.drivers import (
     learning,
     longitudinal,
     reliance,
+    tolerance,
     tracking,
     vision,
 )
@@ -27,6 +28,7 @@ from costeer.drivers.learning import LearningParameters, LearningState
 from costeer.drivers.longitudinal import LongitudinalParameters, LongitudinalState
 from costeer.drivers.overtaking import DecisionParameters
 from costeer.drivers.reliance import RelianceParameters, RelianceState
+from costeer.drivers.tolerance import ToleranceParameters, ToleranceState
 from costeer.drivers.tracking import TrackingParameters, TrackingState
 from costeer.drivers.vision import VisionParameters, VisionState
 
@@ -38,7 +40,7 @@ class DriverParameters(NamedTuple):
         vision: Eyes to intended angle [SI units]. Source: drivers/vision.py.
         arm: Intended angle to torque [SI units]. Source: drivers/arm.py.
         reliance: Hands that feel [SI units]. Source: drivers/reliance.py.
-        tracking: Tolerance of lane position [SI units]. Source: drivers/tracking.py.
+        tracking: Aim in the lane [SI units]. Source: drivers/tracking.py.
         decision: When to change lanes [SI units]. Source: drivers/decision.py.
         gaze: Glances [SI units]. Source: drivers/gaze.py.
         longitudinal: Speed [SI units]. Source: drivers/longitudinal.py.
@@ -46,6 +48,7 @@ class DriverParameters(NamedTuple):
         indicator: When it is set [SI units]. Source: drivers/indicating.py.
         correcting: Planning anew [SI units]. Source: drivers/correcting.py.
         learning: Experience with guidance [SI units]. Source: drivers/learning.py.
+        tolerance: When it is corrected [SI units]. Source: drivers/tolerance.py.
 
     Example:
         >>> import costeer
@@ -65,6 +68,7 @@ class DriverParameters(NamedTuple):
     indicator: IndicatorParameters = IndicatorParameters()
     correcting: CorrectingParameters = CorrectingParameters()
     learning: LearningParameters = LearningParameters()
+    tolerance: ToleranceParameters = ToleranceParameters()
 
 
 class DriverState(NamedTuple):
@@ -80,6 +84,7 @@ class DriverState(NamedTuple):
     indicator: IndicatorState
     correcting: CorrectingState
     learning: LearningState
+    tolerance: ToleranceState
 
 
 @compiled
@@ -97,4 +102,5 @@ def initial_state(parameters: DriverParameters, lateral_position: Real) -> Drive
         indicator=indicating.initial_state(),
         correcting=correcting.initial_state(),
         learning=learning.initial_state(parameters.learning),
+        tolerance=tolerance.initial_state(),
     )

@@ -10,13 +10,8 @@ from numpy.typing import NDArray
 from costeer.base.array import Real
 from costeer.base.packing import leaf_names, packed
 from costeer.drivers.driver import DriverParameters
-from costeer.drivers.population import (
-    PopulationParameters,
-    Traits,
-    correlation_matrix,
-    drawn_traits,
-    participant_driver,
-)
+from costeer.drivers.population import PopulationParameters, participant_driver
+from costeer.drivers.traits import Traits, correlation_matrix, drawn_traits
 
 UNITS = {
     "vision.lead_time": "s",

@@ -10,12 +10,8 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from costeer.base.array import Real
-from costeer.drivers.population import (
-    FACTORS,
-    POPULATION_VERSION,
-    Traits,
-    correlation_matrix,
-)
+from costeer.drivers.population import POPULATION_VERSION
+from costeer.drivers.traits import FACTORS, Traits, correlation_matrix
 from costeer.pages.numerals import number
 from costeer.pages.style import (
     FULL_WIDTH_MM,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from costeer.drivers.population import FACTORS
+from costeer.drivers.traits import FACTORS
 from costeer.pages.numerals import signed
 from costeer.pages.tables import Table
 from costeer.validation.drawn import distribution_told, spreads

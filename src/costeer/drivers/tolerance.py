@@ -1,0 +1,107 @@
+"""Tolerance: what is good enough is left alone until evidence against it has gathered.
+
+Drivers keep a lane by single corrections, not by pursuing its centre: they let go what
+lies within a band (satisficing; Goodrich, Stirling and Boer 2000), and outside it
+evidence gathers until they act (Markkula, Boer, Romano and Merat 2018). Until then the
+hands go on with what they last intended; then, over about one steering movement, they
+come to what is seen, and follow it until the evidence is gone. In a lane change, and in
+an emergency, the eyes never leave the path.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from costeer.base import array as xp
+from costeer.base.array import Flag, Real, compiled
+from costeer.base.filters import low_pass
+
+
+class ToleranceParameters(NamedTuple):
+    """When an intended wheel angle is corrected.
+
+    Attributes:
+        band: b, difference of the angle that is seen to be needed from the intended
+            one that is let go; 0: none is, the driver follows all the time [rad].
+            Source: assumed, 0 in population 2.
+        evidence_rate: r, how fast evidence gathers at twice the band [1/s]. Source:
+            assumed.
+        forgetting_time: τ of the evidence [s]. Source: assumed.
+        movement_time: Within it a correction is made up to a twentieth [s]. Source:
+            Benderius and Markkula (2014), about 0.4 s of a single steering movement.
+    """
+
+    band: Real = 0.0
+    evidence_rate: Real = 2.0
+    forgetting_time: Real = 1.0
+    movement_time: Real = 0.4
+
+
+class ToleranceState(NamedTuple):
+    """What is let go.
+
+    Attributes:
+        intended: Steering-wheel angle that the hands go to [rad].
+        offset: Of it from what is seen to be needed [rad].
+        evidence: A, that it must be corrected, 0 to 1 [-].
+        attends: Whether the hands follow the eyes.
+    """
+
+    intended: Real
+    offset: Real
+    evidence: Real
+    attends: Flag
+
+
+@compiled
+def initial_state() -> ToleranceState:
+    """Straight ahead, nothing to correct."""
+    return ToleranceState(intended=0.0, offset=0.0, evidence=0.0, attends=False)
+
+
+@compiled
+def gathered(
+    parameters: ToleranceParameters, evidence: Real, offset: Real, dt: Real
+) -> Real:
+    """Evidence one step later, A' = r (|offset| / b - 1) - A / τ, within 0 and 1 [-].
+
+    Args:
+        parameters: r, b and τ.
+        evidence: A [-].
+        offset: Of the intended angle from what is seen to be needed [rad].
+        dt: Control step [s].
+    """
+    beyond = xp.absolute(offset) / xp.maximum(parameters.band, 1e-9) - 1.0
+    rate = parameters.evidence_rate * beyond - evidence / parameters.forgetting_time
+    return xp.clip(evidence + rate * dt, 0.0, 1.0)
+
+
+@compiled
+def step(
+    parameters: ToleranceParameters,
+    state: ToleranceState,
+    asked: Real,
+    watches: Flag,
+    dt: Real,
+) -> ToleranceState:
+    """Let the hands rest or follow for one step.
+
+    Args:
+        parameters: Of this driver.
+        state: Of this driver.
+        asked: Steering-wheel angle that is seen to be needed [rad].
+        watches: Whether the path needs the eyes all the time.
+        dt: Control step [s].
+    """
+    always = watches | (parameters.band <= 0.0)
+    missing = state.intended - asked
+    evidence = xp.select(always, 1.0, gathered(parameters, state.evidence, missing, dt))
+    attends = (evidence >= 1.0) | (state.attends & (evidence > 0.0))
+    kept = low_pass(state.offset, 0.0, dt, parameters.movement_time / 3.0)
+    offset = xp.select(attends, kept, missing)
+    return ToleranceState(
+        intended=xp.select(attends, asked + kept, state.intended),
+        offset=offset,
+        evidence=evidence,
+        attends=attends,
+    )
