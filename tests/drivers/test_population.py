@@ -11,16 +11,21 @@ from numpy.typing import NDArray
 
 from costeer.base.packing import leaf_names, packed
 from costeer.drivers.driver import DriverParameters
+from costeer.drivers.interface import Draw
 from costeer.drivers.population import (
     FASTEST_REACTION,
     POPULATION_VERSION,
+    POPULATIONS,
     REACTION_SPREAD,
+    SECOND,
     PopulationParameters,
     driver_with,
     hands_off,
     participant_driver,
+    population_of,
 )
 from costeer.drivers.population import USUAL as USUAL_DRIVERS
+from costeer.drivers.registry import driver_named
 from costeer.drivers.traits import Traits
 from tests.drivers.samples import SPEED
 
@@ -150,6 +155,30 @@ def test_every_trait_moves_the_driver_a_little(trait: str) -> None:
 
 def test_the_population_says_its_version() -> None:
     assert POPULATION_VERSION == "2"
+
+
+def test_the_population_before_is_still_there() -> None:
+    # Numbers of population 2, as docs/decisions/0009-drivers-frozen.md has them.
+    usual = SECOND.usual
+    assert SECOND.version == "2"
+    assert usual.tracking.wander_deviation == 0.19
+    assert (usual.vision.near_noise, usual.vision.motor_noise) == (0.008, 0.0095)
+    assert usual.tolerance.band == usual.correcting.evidence_rate == 0.0
+    assert usual.learning.share == usual.reliance.leading_horizon == 0.0
+    assert usual.vision.signal_noise == 0.0
+
+
+@pytest.mark.parametrize("name", POPULATIONS)
+def test_a_population_is_a_driver_model(name: str) -> None:
+    model = driver_named(name)
+    assert population_of(model) is POPULATIONS[name]
+    drawn_one = model.parameters(Draw(seed=3, participant=2, speed=SPEED))
+    assert drawn_one == participant_driver(3, 2, SPEED, POPULATIONS[name])
+
+
+def test_somebody_elses_driver_is_no_population() -> None:
+    assert population_of(driver_named("virtual")._replace(name="mine")) is None
+    assert population_of(driver_named("virtual")._replace(version="0")) is None
 
 
 def test_no_spread_gives_the_median_driver() -> None:

@@ -14,7 +14,11 @@ from costeer.drivers.tolerance import ToleranceParameters, ToleranceState
 from tests.drivers.samples import DT
 
 PARAMETERS = ToleranceParameters(
-    band=0.02, evidence_rate=1.5, forgetting_time=0.8, movement_time=0.4
+    band=0.02,
+    evidence_rate=1.5,
+    forgetting_time=0.8,
+    movement_time=0.4,
+    trim_time=1e9,
 )
 NOBODY = ToleranceParameters(band=0.0)
 
@@ -39,7 +43,7 @@ def test_without_a_band_the_hands_follow_the_eyes(asked: list[float]) -> None:
 
 def test_what_lies_within_the_band_is_let_go() -> None:
     found = states([0.0199] * 600)
-    assert {s.intended for s in found} == {0.0}
+    assert max(abs(s.intended) for s in found) < 1e-6  # resting hands learn the trim
     assert not any(s.attends for s in found)
 
 
@@ -63,16 +67,26 @@ def test_too_little_evidence_is_forgotten_for_ever() -> None:
 def test_a_correction_is_one_steering_movement() -> None:
     asked = 0.2
     found = [s.intended for s in states([asked] * 120)]
-    first = next(k for k, angle in enumerate(found) if angle != 0.0) - 1
+    first = next(k for k, angle in enumerate(found) if angle > 1e-6) - 1
     movement = np.array(found[first : first + round(0.4 / DT) + 1])
     assert np.all(np.diff(movement) > 0.0)
     assert 0.94 * asked < movement[-1] < asked
 
 
-def test_after_the_correction_the_hands_rest_where_they_are() -> None:
-    found = states([0.2] * 200 + [0.2 + 0.015] * 600)
+def test_hands_come_to_rest_where_the_wheel_has_been() -> None:
+    # A steady need of 0.2 for three time constants: 1 - exp(-3) of it are known.
+    parameters = PARAMETERS._replace(trim_time=5.0)
+    found = states([0.2] * 900, parameters)
+    assert found[-1].trim == pytest.approx(0.2 * (1.0 - math.exp(-3.0)), rel=0.01)
     assert not found[-1].attends
-    assert found[-1].intended == pytest.approx(0.2, abs=2e-3)
+    assert found[-1].intended == pytest.approx(found[-1].trim, abs=1e-3)
+
+
+def test_after_a_correction_the_hands_let_go() -> None:
+    found = states([0.2] * 60 + [0.0] * 120)
+    assert found[59].intended > 0.19
+    assert not found[-1].attends
+    assert abs(found[-1].intended) < 1e-3
 
 
 def test_in_a_lane_change_the_eyes_do_not_leave_the_path() -> None:

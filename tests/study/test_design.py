@@ -10,6 +10,7 @@ import pytest
 from costeer.methods.conditions import CONDITION_NAMES
 from costeer.study.design import (
     condition_order,
+    guided_before,
     plan_trials,
     rows_needed,
     williams_square,
@@ -68,6 +69,20 @@ def test_assisted_trials_of_twelve_are_balanced_in_place() -> None:
     counts = Counter((t.condition, t.order) for t in trials if t.order > 1)
     assert len(counts) == 36
     assert set(counts.values()) == {2}
+
+
+def test_what_was_learnt_before_a_trial_follows_from_its_place() -> None:
+    # Manual, then the practice of 300 s, then trials of 400 s each.
+    day = plan_trials(1, CONDITION_NAMES)
+    before = [guided_before(trial, CONDITION_NAMES, 400.0) for trial in day]
+    assert before == [300.0, 300.0, 700.0, 1100.0, 1500.0, 1900.0, 2300.0]
+
+
+def test_without_manual_the_first_trial_follows_the_practice() -> None:
+    conditions = ("strong-rapid", "weak-rapid")
+    day = plan_trials(2, conditions)
+    before = [guided_before(trial, conditions, 50.0) for trial in day]
+    assert before == [300.0, 350.0, 300.0, 350.0]
 
 
 def test_the_order_does_not_depend_on_how_conditions_are_listed() -> None:

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 from costeer.api.recordings import File, by_name
 from costeer.drivers.driver import DriverParameters
 from costeer.drivers.interface import DriverModel
+from costeer.drivers.learning import PRACTICE
 from costeer.intention.predictors.chosen import Judge
 from costeer.intention.predictors.interface import Predictor
 from costeer.intention.predictors.registry import OURS
@@ -66,6 +67,7 @@ def simulate(
     follows_plan: bool = False,
     abandoned_share: float = 0.0,
     wander_factor: float = 1.0,
+    guided_before: float = PRACTICE,
     engine: str = "numba",
 ) -> TrialRecord:
     """Simulate one trial.
@@ -82,9 +84,9 @@ def simulate(
         participant: Number of the driver in the population.
         intention: "network", "scripted" (the driver's own plan) or "off".
         method: A method, its name, "module:object" or "file.py".
-        driver: "virtual", "hands-off", a driver, or the file of one, "NAME.yaml"; a
-            driver model, its file or place; a record, "NAME.parquet", whose hands
-            are replayed.
+        driver: "virtual" or another population, "hands-off", a driver, or the file of
+            one, "NAME.yaml"; a driver model, its file or place; a record,
+            "NAME.parquet", whose hands are replayed.
         parameters: Dotted names and numbers; `costeer.parameters()` lists them.
         predictor: Of crossings: its name or place, a `Predictor`, or a function from
             the last window, shape `(180, 6)`, to a probability.
@@ -102,6 +104,8 @@ def simulate(
         follows_plan: The system changes lanes just as this driver plans to.
         abandoned_share: Share of lane changes that the driver gives up [-].
         wander_factor: On the driver's wander in the lane [-].
+        guided_before: Driving with guidance before this trial, from which a virtual
+            driver has learnt; by itself that of the practice [s].
         engine: "numba", "python" (slow, and can be debugged) or "jax".
 
     Returns:

@@ -15,6 +15,10 @@ from costeer.base import array as xp
 from costeer.base.array import Flag, Real, compiled
 from costeer.drivers.reliance import RelianceParameters
 
+PRACTICE = 300.0
+"""Guided driving in the practice before a study [s]. Source: the paper, Sec. III-B,
+5 to 10 min."""
+
 
 class LearningParameters(NamedTuple):
     """How a driver gets used to the guidance.

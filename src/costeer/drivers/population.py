@@ -13,21 +13,30 @@ import numpy as np
 
 from costeer.base.array import Real
 from costeer.drivers.arm import ArmParameters
+from costeer.drivers.correcting import CorrectingParameters
 from costeer.drivers.driver import DriverParameters, act, initial_state
 from costeer.drivers.evasion import EvasionParameters
 from costeer.drivers.gaze import GazeParameters
-from costeer.drivers.interface import Draw, DriverModel
+from costeer.drivers.interface import AnyDriver, Draw, DriverModel
+from costeer.drivers.learning import LearningParameters
 from costeer.drivers.longitudinal import LongitudinalParameters
 from costeer.drivers.overtaking import DecisionParameters
 from costeer.drivers.reliance import RelianceParameters
+from costeer.drivers.tolerance import ToleranceParameters
 from costeer.drivers.tracking import TrackingParameters
 from costeer.drivers.traits import Traits, drawn_traits
 from costeer.drivers.vision import VisionParameters
+from costeer.drivers.whole import DriverState
+
+VirtualDriver = DriverModel[DriverParameters, DriverState]
 
 POPULATION_VERSION = "2"
 """Changes when a parameter, a spread or a correlation of the drivers does."""
 
 _EVASION_STREAM = 8
+
+PILOT_SEED = 900_001
+"""Seed of the pilot drivers that set the inconsistency threshold δ."""
 
 REACTION_SPREAD = 0.25
 """Standard deviation of the logarithm of reaction times between drivers [-]. Source:
@@ -46,6 +55,8 @@ class PopulationParameters(NamedTuple):
     Attributes:
         wander_deviation_spread: Of `wander_deviation` [-]. Source: assumed,
             calibrated on the spread of manual SDLP between drivers.
+        band_spread: Of the tolerance's `band`, with the wander's trait [-]. Source:
+            assumed, as above.
         lane_bias_spread: Of `lane_bias` [m]. Source: assumed.
         near_noise_spread: Of `near_noise` and `motor_noise` [-]. Source: assumed,
             calibrated on manual reversal rates.
@@ -70,6 +81,7 @@ class PopulationParameters(NamedTuple):
     """
 
     wander_deviation_spread: Real = 0.18
+    band_spread: Real = 0.0
     lane_bias_spread: Real = 0.05
     near_noise_spread: Real = 0.2
     lead_time_spread: Real = 0.3
@@ -104,6 +116,25 @@ class Population(NamedTuple):
 
 USUAL = Population(name="virtual", version=POPULATION_VERSION)
 """The population that ships with costeer."""
+
+SECOND = Population(
+    name="virtual-2",
+    version="2",
+    usual=DriverParameters(
+        vision=VisionParameters(near_noise=0.008, motor_noise=0.0095, signal_noise=0.0),
+        reliance=RelianceParameters(leading_horizon=0.0),
+        tracking=TrackingParameters(wander_deviation=0.19),
+        correcting=CorrectingParameters(evidence_rate=0.0),
+        learning=LearningParameters(share=0.0, before=0.0),
+        tolerance=ToleranceParameters(band=0.0),
+    ),
+    spreads=PopulationParameters(wander_deviation_spread=0.18, band_spread=0.0),
+)
+"""The population before: it plans once, pursues its aim and learns nothing, which makes
+it the one that can be identified from a recording."""
+
+POPULATIONS = {each.name: each for each in (USUAL, SECOND)}
+"""All that can be chosen, by name."""
 
 
 def _positive(median: Real, spread: Real, trait: Real) -> Real:
@@ -165,6 +196,9 @@ def driver_with(
         decision=_decision(usual.decision, traits, spread),
         gaze=_gaze(usual.gaze, traits, spread),
         longitudinal=_longitudinal(usual.longitudinal, traits, spread, speed),
+        tolerance=usual.tolerance._replace(
+            band=_positive(usual.tolerance.band, spread.band_spread, traits.wander)
+        ),
     )
 
 
@@ -271,6 +305,19 @@ def _longitudinal(
     return usual._replace(preferred_speed=preferred, overtaking_speed=faster)
 
 
+def check_study_seed(seed: int) -> None:
+    """Refuse the pilot drivers as participants: δ was tuned on them.
+
+    Raises:
+        ValueError: If it is their seed.
+    """
+    if seed == PILOT_SEED:
+        raise ValueError(
+            f"seed {seed} is that of the pilot drivers, on whom the inconsistency "
+            "threshold was set; give another seed"
+        )
+
+
 def hands_off(speed: Real) -> DriverParameters:
     """A driver who only holds `speed` [m/s]: no hands, no decisions, no glances."""
     return DriverParameters(
@@ -281,16 +328,30 @@ def hands_off(speed: Real) -> DriverParameters:
     )
 
 
-def _drawn(draw: Draw) -> DriverParameters:
-    return participant_driver(draw.seed, draw.participant, draw.speed)
+def _model(population: Population) -> VirtualDriver:
+    """The population as a driver model; all of them follow one law."""
+
+    def drawn(draw: Draw) -> DriverParameters:
+        return participant_driver(draw.seed, draw.participant, draw.speed, population)
+
+    return DriverModel(
+        name=population.name,
+        version=population.version,
+        source="Saleh et al. (2013), with what docs/drivers.md adds",
+        parameters=drawn,
+        initial_state=initial_state,
+        act=act,
+    )
 
 
-VIRTUAL = DriverModel(
-    name="virtual",
-    version=str(POPULATION_VERSION),
-    source="Saleh et al. (2013), with what docs/drivers.md adds",
-    parameters=_drawn,
-    initial_state=initial_state,
-    act=act,
-)
+MODELS = {name: _model(population) for name, population in POPULATIONS.items()}
+"""The populations as driver models, by name."""
+
+VIRTUAL = MODELS[USUAL.name]
 """The population that ships with costeer."""
+
+
+def population_of(driver: AnyDriver) -> Population | None:
+    """The population that a driver model is; None if somebody else made it."""
+    ours = MODELS.get(driver.name)
+    return POPULATIONS[driver.name] if driver is ours else None

@@ -3,9 +3,10 @@
 Drivers keep a lane by single corrections, not by pursuing its centre: they let go what
 lies within a band (satisficing; Goodrich, Stirling and Boer 2000), and outside it
 evidence gathers until they act (Markkula, Boer, Romano and Merat 2018). Until then the
-hands go on with what they last intended; then, over about one steering movement, they
-come to what is seen, and follow it until the evidence is gone. In a lane change, and in
-an emergency, the eyes never leave the path.
+hands rest where the wheel has been on the whole, as against a steady side wind; then,
+over about one steering movement, they come to what is seen to be needed, and follow it
+until the evidence is gone. In a lane change, and in an emergency, the eyes never leave
+the path.
 """
 
 from __future__ import annotations
@@ -29,12 +30,15 @@ class ToleranceParameters(NamedTuple):
         forgetting_time: τ of the evidence [s]. Source: assumed.
         movement_time: Within it a correction is made up to a twentieth [s]. Source:
             Benderius and Markkula (2014), about 0.4 s of a single steering movement.
+        trim_time: Over which resting hands know where the wheel has been [s]. Source:
+            assumed.
     """
 
     band: Real = 0.0
     evidence_rate: Real = 2.0
     forgetting_time: Real = 1.0
     movement_time: Real = 0.4
+    trim_time: Real = 20.0
 
 
 class ToleranceState(NamedTuple):
@@ -45,18 +49,22 @@ class ToleranceState(NamedTuple):
         offset: Of it from what is seen to be needed [rad].
         evidence: A, that it must be corrected, 0 to 1 [-].
         attends: Whether the hands follow the eyes.
+        trim: Where resting hands go to [rad].
     """
 
     intended: Real
     offset: Real
     evidence: Real
     attends: Flag
+    trim: Real
 
 
 @compiled
 def initial_state() -> ToleranceState:
     """Straight ahead, nothing to correct."""
-    return ToleranceState(intended=0.0, offset=0.0, evidence=0.0, attends=False)
+    return ToleranceState(
+        intended=0.0, offset=0.0, evidence=0.0, attends=False, trim=0.0
+    )
 
 
 @compiled
@@ -94,14 +102,18 @@ def step(
         dt: Control step [s].
     """
     always = watches | (parameters.band <= 0.0)
-    missing = state.intended - asked
+    trim = low_pass(state.trim, asked, dt, parameters.trim_time)
+    lag = parameters.movement_time / 3.0
+    resting = low_pass(state.intended, trim, dt, lag)
+    missing = resting - asked
     evidence = xp.select(always, 1.0, gathered(parameters, state.evidence, missing, dt))
     attends = (evidence >= 1.0) | (state.attends & (evidence > 0.0))
-    kept = low_pass(state.offset, 0.0, dt, parameters.movement_time / 3.0)
+    kept = low_pass(state.offset, 0.0, dt, lag)
     offset = xp.select(attends, kept, missing)
     return ToleranceState(
-        intended=xp.select(attends, asked + kept, state.intended),
+        intended=xp.select(attends, asked + kept, resting),
         offset=offset,
         evidence=evidence,
         attends=attends,
+        trim=trim,
     )

@@ -18,7 +18,7 @@ from costeer.base.described import described, with_values
 from costeer.base.files import read_whole, write_text
 from costeer.drivers.driver import DriverParameters
 from costeer.drivers.interface import AnyDriver
-from costeer.drivers.population import VIRTUAL
+from costeer.drivers.population import population_of
 from costeer.drivers.registry import driver_named
 from costeer.drivers.replayed import replayed_hands
 from costeer.plant.parameters import CARS, CarParameters
@@ -138,7 +138,7 @@ def driver_of(given: str | Driver) -> Driver | str:
     if given.endswith(".parquet"):
         return replayed_hands(read_record(Path(given)))
     model = driver_named(given)
-    return given if model is VIRTUAL else model
+    return given if population_of(model) else model
 
 
 def _filled(usual: Record, path: Path) -> Record:

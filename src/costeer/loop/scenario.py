@@ -10,7 +10,15 @@ from costeer.drivers.checked import drawn_parameters
 from costeer.drivers.driver import DriverParameters
 from costeer.drivers.interface import AnyDriver
 from costeer.drivers.interface import Draw as DriverDraw
-from costeer.drivers.population import VIRTUAL, hands_off, participant_driver
+from costeer.drivers.learning import PRACTICE
+from costeer.drivers.population import PILOT_SEED as PILOT_SEED
+from costeer.drivers.population import (
+    VIRTUAL,
+    hands_off,
+    participant_driver,
+    population_of,
+)
+from costeer.drivers.population import check_study_seed as check_study_seed
 from costeer.drivers.registry import HANDS_OFF, driver_named
 from costeer.intention.predictors.chosen import Judge
 from costeer.intention.predictors.interface import Predictor
@@ -50,9 +58,6 @@ INTENTIONS = {
 }
 """Where the crossing probability comes from, by name."""
 
-PILOT_SEED = 900_001
-"""Seed of the pilot drivers that set the inconsistency threshold δ."""
-
 
 class TrialSetup(NamedTuple):
     """One trial, in full: the same setup gives the same record.
@@ -71,8 +76,9 @@ class TrialSetup(NamedTuple):
         length: Of the course [m].
         speed: That the trial starts with and the driver prefers [m/s].
         car: Name of the car, or its parameters.
-        driver: "virtual", "hands-off", the parameters of a virtual driver, or a
-            driver model, its name or where it is (`drivers.registry`).
+        driver: "virtual" or another population of costeer's, "hands-off", the
+            parameters of a virtual driver, or a driver model, its name or where it is
+            (`drivers.registry`).
         intention: "network", "scripted" (a perfect predictor of the driver's own
             plan) or "off".
         predictor: What predicts a crossing where the intention is "network": the
@@ -90,6 +96,8 @@ class TrialSetup(NamedTuple):
         abandoned_share: Share of lane changes that the driver gives up on the way [-].
         wander_factor: The driver's wander in the lane is so much larger than that of
             the population [-].
+        guided_before: Driving with guidance before this trial, from which a virtual
+            driver has learnt [s]; by itself that of the practice.
         parameters: Dotted names of parameters and the values they are given, as
             `("guidance.lateral_error_gain", 3.0)`; see `costeer parameters`.
         scenario: Road, other cars and events: a name, a file or itself
@@ -119,6 +127,7 @@ class TrialSetup(NamedTuple):
     follows_plan: bool = False
     abandoned_share: Real = 0.0
     wander_factor: Real = 1.0
+    guided_before: Real = PRACTICE
     parameters: tuple[tuple[str, Real], ...] = ()
     scenario: str | Scenario = "expressway"
     mistakes: tuple[str, ...] = ()
@@ -149,6 +158,7 @@ _RANGES = {
     "plant_steps": _Range(4, 64, "-"),
     "abandoned_share": _Range(0.0, 1.0, "-"),
     "wander_factor": _Range(0.0, 5.0, "-"),
+    "guided_before": _Range(0.0, 1e6, "s"),
 }
 
 
@@ -197,19 +207,6 @@ def _out_of_range(name: str, value: Real, allowed: _Range) -> str:
     return told.removesuffix(" -")
 
 
-def check_study_seed(seed: int) -> None:
-    """Refuse the pilot drivers as participants: δ was tuned on them.
-
-    Raises:
-        ValueError: If it is their seed.
-    """
-    if seed == PILOT_SEED:
-        raise ValueError(
-            f"seed {seed} is that of the pilot drivers, on whom the inconsistency "
-            "threshold was set; give another seed"
-        )
-
-
 def _check_choice(name: str, value: str, choices: tuple[str, ...]) -> None:
     if value not in choices:
         known = ", ".join(choices)
@@ -243,14 +240,15 @@ def trial_car(setup: TrialSetup) -> CarParameters:
 
 
 def trial_driver_model(setup: TrialSetup) -> AnyDriver:
-    """Who holds the wheel in a trial.
+    """Who holds the wheel in a trial; all populations of costeer are one model.
 
     Raises:
         ValueError: If there is no such driver.
     """
     if isinstance(setup.driver, DriverParameters):
         return VIRTUAL
-    return driver_named(setup.driver)
+    model = driver_named(setup.driver)
+    return VIRTUAL if population_of(model) else model
 
 
 def trial_driver(setup: TrialSetup) -> Any:  # Any: parameters of the model's own
@@ -263,15 +261,17 @@ def trial_driver(setup: TrialSetup) -> Any:  # Any: parameters of the model's ow
         return setup.driver
     if setup.driver == HANDS_OFF:
         return hands_off(setup.speed)
-    model = trial_driver_model(setup)
-    if model is not VIRTUAL:
+    model = driver_named(setup.driver)
+    population = population_of(model)
+    if population is None:
         _check_unused(setup, model)
         draw = DriverDraw(setup.seed, setup.participant, setup.speed, trial_car(setup))
         return drawn_parameters(model, draw)
-    drawn = participant_driver(setup.seed, setup.participant, setup.speed)
-    aim, decides = drawn.tracking, drawn.decision
+    drawn = participant_driver(setup.seed, setup.participant, setup.speed, population)
+    aim, decides, knows = drawn.tracking, drawn.decision, drawn.learning
     wander = aim.wander_deviation * setup.wander_factor
     return drawn._replace(
+        learning=knows._replace(before=setup.guided_before),
         tracking=aim._replace(wander_deviation=wander),
         decision=decides._replace(abandoned_share=setup.abandoned_share),
     )

@@ -15,7 +15,7 @@ from costeer.base.array import Real
 from costeer.base.described import described
 from costeer.drivers.driver import DriverParameters
 from costeer.drivers.interface import AnyDriver, DriverModel, driver_sources
-from costeer.drivers.population import POPULATION_VERSION, VIRTUAL
+from costeer.drivers.population import POPULATIONS, USUAL, VIRTUAL
 from costeer.drivers.registry import HANDS_OFF
 from costeer.intention.features import NUM_FEATURES, NUM_INPUTS, NUM_SCALED
 from costeer.intention.gru import NetworkWeights
@@ -243,7 +243,9 @@ def _driver_text(setup: TrialSetup, driver: AnyDriver) -> str:
     if isinstance(setup.driver, DriverParameters):
         return "virtual, parameters of its own"
     if driver is VIRTUAL:
-        return f"{setup.driver}, population {POPULATION_VERSION}"
+        who = setup.driver if isinstance(setup.driver, str) else setup.driver.name
+        population = POPULATIONS.get(who, USUAL)
+        return f"{who}, population {population.version}"
     return f"{driver.name} {driver.version}"
 
 

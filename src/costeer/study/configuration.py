@@ -38,7 +38,7 @@ from costeer.scenarios.definition import Scenario
 from costeer.scenarios.reading import checked, scenario_named, scenario_of, shipped
 from costeer.scenarios.writing import plain
 from costeer.study.changes import PUBLISHED_SCENARIO
-from costeer.study.design import Trial, plan_trials
+from costeer.study.design import Trial, guided_before, plan_trials
 from costeer.study.plain import (
     plain_count,
     plain_number,
@@ -172,6 +172,9 @@ def trial_setup(settings: StudySettings, trial: Trial) -> TrialSetup:
         parameters=settings.parameters,
         scenario=settings.scenario,
         mistakes=settings.mistakes,
+        guided_before=guided_before(
+            trial, settings.conditions, settings.length / max(settings.speed, 1.0)
+        ),
     )
 
 

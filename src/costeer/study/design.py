@@ -10,6 +10,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import NamedTuple
 
+from costeer.base.array import Real
+from costeer.drivers.learning import PRACTICE
 from costeer.methods.conditions import MANUAL, check_conditions
 
 MOST_CONDITIONS = 8
@@ -79,6 +81,18 @@ def plan_trials(participants: int, conditions: Sequence[str]) -> tuple[Trial, ..
         for participant in range(1, participants + 1)
         for place, name in enumerate(condition_order(participant, conditions), start=1)
     )
+
+
+def guided_before(trial: Trial, conditions: Sequence[str], duration: Real) -> Real:
+    """Driving with guidance before a trial: practice and earlier guided trials [s].
+
+    Args:
+        trial: Manual comes first, so that of those before only that one had none.
+        conditions: Of the study.
+        duration: Of a trial [s].
+    """
+    earlier = trial.order - 1 - (MANUAL in conditions)
+    return PRACTICE + max(earlier, 0) * duration
 
 
 def rows_needed(conditions: Sequence[str]) -> int:
