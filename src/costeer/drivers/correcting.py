@@ -23,18 +23,17 @@ class CorrectingParameters(NamedTuple):
 
     Attributes:
         usual_error: e_0, distance from the own path that nobody minds [m]. Source:
-            assumed until it is the 95 % quantile of manual lane changes
-            (docs/decisions/0016-drivers-3-plan.md).
+            95 % quantile of manual lane changes of virtual drivers.
         evidence_rate: r, how fast evidence gathers at twice `usual_error`; 0: never
-            [1/s]. Source: assumed, 0 in population 2.
+            [1/s]. Source: at most one manual lane change in twenty is planned anew.
         forgetting_time: τ of the evidence [s]. Source: assumed.
         pause: From one plan to the next at least [s]. Source: shortest intervals of
             corrections, about 1 s.
         shortest: Least duration of a new plan [s]. Source: assumed.
     """
 
-    usual_error: Real = 0.3
-    evidence_rate: Real = 0.0
+    usual_error: Real = 0.28
+    evidence_rate: Real = 1.2
     forgetting_time: Real = 1.0
     pause: Real = 1.0
     shortest: Real = 2.0

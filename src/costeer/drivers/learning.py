@@ -24,8 +24,7 @@ class LearningParameters(NamedTuple):
     """How a driver gets used to the guidance.
 
     Attributes:
-        share: Of all that follows, 0: nothing is learnt [-]. Source: assumed, 0 in
-            population 2.
+        share: Of all that follows, 0: nothing is learnt [-]. Source: assumed.
         before: Guided driving before this drive [s]. Source: the order of drives.
         learning_time: Time constant of guided driving [s]. Source: McGehee et al.
             (2001), about 3 min in a simulator.
@@ -40,8 +39,8 @@ class LearningParameters(NamedTuple):
             direction Azevedo-Sa et al. (2020).
     """
 
-    share: Real = 0.0
-    before: Real = 0.0
+    share: Real = 1.0
+    before: Real = PRACTICE
     learning_time: Real = 180.0
     forgetting_time: Real = 30.0
     noticed_torque: Real = 0.05

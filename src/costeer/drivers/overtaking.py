@@ -82,8 +82,8 @@ class DecisionParameters(NamedTuple):
     worthwhile_difference: Real = 1.0
     patience: Real = 6.0
     return_headway: Real = 1.44
-    change_duration: Real = 7.2
-    change_duration_spread: Real = 0.17
+    change_duration: Real = 6.4
+    change_duration_spread: Real = 0.1
     preparation_time: Real = 1.8
     return_preparation_time: Real = 0.35
     preparation_spread: Real = 0.35

@@ -30,7 +30,7 @@ from costeer.drivers.whole import DriverState
 
 VirtualDriver = DriverModel[DriverParameters, DriverState]
 
-POPULATION_VERSION = "2"
+POPULATION_VERSION = "3"
 """Changes when a parameter, a spread or a correlation of the drivers does."""
 
 _EVASION_STREAM = 8
@@ -70,7 +70,7 @@ class PopulationParameters(NamedTuple):
         cocontraction_spread: Of `cocontraction` [-], clipped to 1.5 to 3. Source:
             assumed.
         duration_spread: Of the driver's median planned duration [-]. Source:
-            assumed, calibrated on durations of real lane changes.
+            assumed, calibrated on durations of lane changes.
         headway_spread: Of the headways at which overtaking and return are decided
             [-]. Source: assumed.
         patience_spread: Of the patience behind a leader [-]. Source: assumed.
@@ -80,8 +80,8 @@ class PopulationParameters(NamedTuple):
         glance_spread: Of glance amplitude [-]. Source: assumed.
     """
 
-    wander_deviation_spread: Real = 0.18
-    band_spread: Real = 0.0
+    wander_deviation_spread: Real = 0.22
+    band_spread: Real = 0.22
     lane_bias_spread: Real = 0.05
     near_noise_spread: Real = 0.2
     lead_time_spread: Real = 0.3
@@ -89,7 +89,7 @@ class PopulationParameters(NamedTuple):
     arm_spread: Real = 0.15
     reliance_spread: Real = 0.2
     cocontraction_spread: Real = 0.2
-    duration_spread: Real = 0.16
+    duration_spread: Real = 0.1
     headway_spread: Real = 0.12
     patience_spread: Real = 0.4
     shoulder_spread: Real = 0.15
@@ -98,28 +98,48 @@ class PopulationParameters(NamedTuple):
     glance_spread: Real = 0.1
 
 
+SIMULATOR, TRAFFIC = "simulator", "traffic"
+"""Domains of driving: a fixed base, as in the paper's study, and real roads."""
+
+
 class Population(NamedTuple):
     """People of one kind.
 
     Attributes:
         name: Of the driver model: small letters, digits, hyphens.
         version: Changes when a parameter, a spread or a correlation does.
+        domain: Where lane changes last as long as these drivers'.
         usual: The driver without any trait.
         spreads: Between drivers.
     """
 
     name: str
     version: str
+    domain: str = SIMULATOR
     usual: DriverParameters = DriverParameters()
     spreads: PopulationParameters = PopulationParameters()
 
 
 USUAL = Population(name="virtual", version=POPULATION_VERSION)
-"""The population that ships with costeer."""
+"""The population that ships with costeer, in a driving simulator."""
+
+_IN_TRAFFIC = USUAL.usual.decision._replace(
+    change_duration=7.2, change_duration_spread=0.17
+)
+
+ON_THE_ROAD = Population(
+    name="virtual-traffic",
+    version=POPULATION_VERSION,
+    domain=TRAFFIC,
+    usual=USUAL.usual._replace(decision=_IN_TRAFFIC),
+    spreads=PopulationParameters(duration_spread=0.16),
+)
+"""The same drivers on real roads, where lane changes take longer and vary more."""
 
 SECOND = Population(
     name="virtual-2",
     version="2",
+    domain=TRAFFIC,
     usual=DriverParameters(
         vision=VisionParameters(near_noise=0.008, motor_noise=0.0095, signal_noise=0.0),
         reliance=RelianceParameters(leading_horizon=0.0),
@@ -127,13 +147,16 @@ SECOND = Population(
         correcting=CorrectingParameters(evidence_rate=0.0),
         learning=LearningParameters(share=0.0, before=0.0),
         tolerance=ToleranceParameters(band=0.0),
+        decision=_IN_TRAFFIC,
     ),
-    spreads=PopulationParameters(wander_deviation_spread=0.18, band_spread=0.0),
+    spreads=PopulationParameters(
+        wander_deviation_spread=0.18, band_spread=0.0, duration_spread=0.16
+    ),
 )
 """The population before: it plans once, pursues its aim and learns nothing, which makes
 it the one that can be identified from a recording."""
 
-POPULATIONS = {each.name: each for each in (USUAL, SECOND)}
+POPULATIONS = {each.name: each for each in (USUAL, ON_THE_ROAD, SECOND)}
 """All that can be chosen, by name."""
 
 

@@ -27,7 +27,7 @@ class RelianceParameters(NamedTuple):
             assumed, tense within 0.3 to 0.5 s.
         leading_horizon: Guidance that brings the car to the wanted lane within it
             leads and does not oppose; 0: there is no such difference [s]. Source:
-            assumed, 0 in population 2.
+            assumed.
     """
 
     reliance: Real = 0.5
@@ -36,7 +36,7 @@ class RelianceParameters(NamedTuple):
     opposing_time: Real = 0.2
     cocontraction: Real = 2.2
     tensing_time: Real = 0.2
-    leading_horizon: Real = 0.0
+    leading_horizon: Real = 1.5
 
 
 class RelianceState(NamedTuple):

@@ -24,19 +24,19 @@ class ToleranceParameters(NamedTuple):
     Attributes:
         band: b, difference of the angle that is seen to be needed from the intended
             one that is let go; 0: none is, the driver follows all the time [rad].
-            Source: assumed, 0 in population 2.
+            Source: assumed, with τ calibrated on manual lane keeping.
         evidence_rate: r, how fast evidence gathers at twice the band [1/s]. Source:
-            assumed.
-        forgetting_time: τ of the evidence [s]. Source: assumed.
+            onset of corrections of 1 deg, 0.40 s (Goodridge et al. 2022).
+        forgetting_time: τ of the evidence [s]. Source: assumed, as the band.
         movement_time: Within it a correction is made up to a twentieth [s]. Source:
             Benderius and Markkula (2014), about 0.4 s of a single steering movement.
         trim_time: Over which resting hands know where the wheel has been [s]. Source:
             assumed.
     """
 
-    band: Real = 0.0
-    evidence_rate: Real = 2.0
-    forgetting_time: Real = 1.0
+    band: Real = 0.006
+    evidence_rate: Real = 0.22
+    forgetting_time: Real = 5.0
     movement_time: Real = 0.4
     trim_time: Real = 20.0
 

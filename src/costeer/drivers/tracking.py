@@ -35,7 +35,7 @@ class TrackingParameters(NamedTuple):
         lane_bias: Preferred place beside the lane's centre [m]. Source: assumed.
     """
 
-    wander_deviation: Real = 0.19
+    wander_deviation: Real = 0.17
     wander_frequency: Real = 0.35
     wander_damping: Real = 0.7
     lane_bias: Real = 0.0

@@ -42,7 +42,7 @@ class VisionParameters(NamedTuple):
         noise_time: Correlation time of both noises [s]. Source: assumed.
         signal_noise: What `motor_noise` grows by per intended angle, as motor noise
             does with the torque that is given (Harris and Wolpert 1998) [-]. Source:
-            assumed, 0 in population 2.
+            assumed.
         sight: How far the road can be seen [m]. Source: assumed, no fog.
     """
 
@@ -54,10 +54,10 @@ class VisionParameters(NamedTuple):
     near_time: Real = 0.4
     anticipation_time: Real = 0.35
     curvature_gain: Real = 0.9
-    near_noise: Real = 0.008
-    motor_noise: Real = 0.0095
+    near_noise: Real = 0.0055
+    motor_noise: Real = 0.0065
     noise_time: Real = 0.35
-    signal_noise: Real = 0.0
+    signal_noise: Real = 0.1
     sight: Real = 1000.0
 
 
