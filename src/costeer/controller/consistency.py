@@ -29,7 +29,7 @@ class ConsistencyParameters(NamedTuple):
             rim keep the gain at 0 for ever.
     """
 
-    inconsistency_threshold: Real = 0.025
+    inconsistency_threshold: Real = 0.023
     hold_time: Real = 0.0
     hands_on_threshold: Real = 0.1
 

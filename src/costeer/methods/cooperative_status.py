@@ -39,7 +39,7 @@ class CooperationParameters(NamedTuple):
             runs of pilot drivers, benchmarks/rival_thresholds.py.
     """
 
-    initiative_threshold: Real = 0.36
+    initiative_threshold: Real = 0.35
 
 
 class CooperativeStatusParameters(NamedTuple):

@@ -49,7 +49,7 @@ class IntentParameters(NamedTuple):
     memory: Real = 2.0
     admittance: Real = 0.2
     shift_limit: Real = 0.3
-    threshold: Real = 0.53
+    threshold: Real = 0.58
 
 
 class InclusionParameters(NamedTuple):

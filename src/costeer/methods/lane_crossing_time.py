@@ -43,7 +43,7 @@ class CrossingTimeParameters(NamedTuple):
         settled_yaw: Largest yaw angle of a settled car [rad]. Source: as ibhs.
     """
 
-    crossing_time: Real = 6.4
+    crossing_time: Real = 5.3
     trigger_samples: Real = 3.0
     lock_duration: Real = 3.0
     settled_duration: Real = 0.5

@@ -19,7 +19,7 @@ from costeer.methods.lanes import lateral_velocity
 from costeer.plant.parameters import CarParameters, ColumnParameters, RoadParameters
 from costeer.sensing.measurement import Measurement
 
-INCONSISTENCY_THRESHOLD = 1.7
+INCONSISTENCY_THRESHOLD = 1.5
 """δ, least gap of the pseudo-works [W·m]. Source: ours, twice the 99.9th percentile of
 agreeing runs of pilot drivers, benchmarks/rival_thresholds.py."""
 

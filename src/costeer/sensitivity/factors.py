@@ -36,9 +36,9 @@ FACTORS = (
     Factor(
         "δ",
         "consistency.inconsistency_threshold",
-        0.0124,
-        0.05,
-        0.025,
+        0.0114,
+        0.046,
+        0.023,
         "W",
         "decision 6: the 99.9th percentile of agreeing runs itself, and twice δ",
     ),
