@@ -1,9 +1,9 @@
 """Whether virtual drivers and guidance, who hold one wheel, make it swing.
 
-    python -m benchmarks.guided_stability [FIGURE.svg]
+    python -m benchmarks.guided_stability [FIGURE.svg] [--drivers 40]
 
 Prints for three cars at 50 to 110 km/h, strong guidance at full gain: least damping
-ratio of the linear loop over 40 drivers, its frequency, and the largest amplitude of
+ratio of the linear loop over so many drivers, its frequency, and the largest amplitude of
 the wheel 40 s after a start beside the aim; first with K_theta constant, then as it is,
 rising with the speed. Writes the figure of docs/stability.md where a file is named.
 Exit code 1 if a driver swings with the guidance as it is.
@@ -11,6 +11,7 @@ Exit code 1 if a driver swings with the guidance as it is.
 
 from __future__ import annotations
 
+import argparse
 import sys
 from pathlib import Path
 
@@ -52,11 +53,11 @@ STYLES = {
 Table = dict[str, dict[str, list[Guided]]]
 
 
-def looked_at() -> Table:
-    """Every car at every speed, for both forms of K_theta."""
+def looked_at(number: int) -> Table:
+    """Every car at every speed with so many drivers, for both forms of K_theta."""
     return {
         name: {
-            car: [guided_drivers(SEED, NUM_DRIVERS, car, v, values) for v in SPEEDS]
+            car: [guided_drivers(SEED, number, car, v, values) for v in SPEEDS]
             for car in CARS
         }
         for name, values in SERIES.items()
@@ -66,12 +67,12 @@ def looked_at() -> Table:
 def print_table(table: Table) -> None:
     """One row for each car and speed."""
     for name, cars in table.items():
-        print(f"\nK_theta {name}; {NUM_DRIVERS} drivers of seed {SEED}")
-        print("car      km/h  damping ratio  at rad/s  wheel deg  swinging")
+        print(f"\nK_theta {name}; drivers of seed {SEED}")
+        print("drivers  car      km/h  damping ratio  at rad/s  wheel deg  swinging")
         for found in (each for speeds in cars.values() for each in speeds):
             worst = int(found.damping_ratio.argmin())
             print(
-                f"{found.car:8s} {found.speed * 3.6:4.0f} "
+                f"{found.swing.size:7d}  {found.car:8s} {found.speed * 3.6:4.0f} "
                 f"{found.damping_ratio[worst]:14.2f} {found.frequency[worst]:9.1f} "
                 f"{np.degrees(found.swing.max()):10.2f} "
                 f"{np.count_nonzero(swinging(found)):9d}"
@@ -128,14 +129,17 @@ def drawn(table: Table) -> Figure:
 
 def main() -> int:
     """Print, draw, and return 1 if a driver swings with the guidance as it is."""
-    table = looked_at()
-    print("python -m benchmarks.guided_stability")
+    parser = argparse.ArgumentParser(prog="benchmarks.guided_stability")
+    parser.add_argument("figure", type=Path, nargs="?")
+    parser.add_argument("--drivers", type=int, default=NUM_DRIVERS)
+    asked = parser.parse_args()
+    table = looked_at(asked.drivers)
     print_table(table)
-    if len(sys.argv) > 1:
+    if asked.figure is not None:
         title = "Damping and lasting swing of drivers with guidance, over the speed"
         with styled():
             text = svg_text(drawn(table), "guided-stability", title)
-        Path(sys.argv[1]).write_text(text, "utf-8")
+        asked.figure.write_text(text, "utf-8")
     now = table["rising with the speed"].values()
     return int(any(swinging(found).any() for speeds in now for found in speeds))
 

@@ -24,7 +24,8 @@ Car = Annotated[
     str, typer.Option(help="default, compact, large, or a FILE.yaml of its own.")
 ]
 _DRIVER = (
-    "virtual, hands-off, a driver of `costeer drivers --fit --out` (FILE.yaml), a "
+    "virtual, virtual-traffic, virtual-2 (drivers before), hands-off, a driver of "
+    "`costeer drivers --fit --out` (FILE.yaml), a "
     "driver model (module:object or FILE.py), or a record whose hands are replayed "
     "(FILE.parquet)"
 )
