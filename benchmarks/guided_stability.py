@@ -3,7 +3,7 @@
     python -m benchmarks.guided_stability [FIGURE.svg] [--drivers 40]
 
 Prints for three cars at 50 to 110 km/h, strong guidance at full gain: least damping
-ratio of the linear loop over so many drivers, its frequency, and the largest amplitude of
+ratio of the linear loop over so many drivers, its frequency, the largest amplitude of
 the wheel 40 s after a start beside the aim; first with K_theta constant, then as it is,
 rising with the speed. Writes the figure of docs/stability.md where a file is named.
 Exit code 1 if a driver swings with the guidance as it is.
