@@ -97,7 +97,7 @@ SETUP = TrialSetup(
     intention="off",
     events=False,
     initial_offset=0.5,
-    length=100.0,
+    length=40.0,
 )
 PLACE = f"{__file__}:CALM"
 ENGINES = pytest.mark.parametrize(
@@ -202,7 +202,7 @@ def test_a_torque_that_cannot_be_given_is_contained_and_told(
     num_steps = len(record.columns["torque_fault"])
     assert record.metadata["torque_faults"] == (num_steps if fault else 0)
     torques = record.columns["applied_torque"]
-    # After five seconds the motor's lag of 20 ms is over.
+    # After two seconds the motor's lag of 20 ms is over.
     assert torques[-1] == pytest.approx(command)
     assert np.abs(torques).max() <= abs(command)
 

@@ -125,6 +125,7 @@ def test_every_figure_is_described_for_those_who_do_not_see_it(
         assert exhibit.description.endswith(".")
 
 
+@pytest.mark.slow
 def test_a_style_of_the_user_changes_nothing(material: StudyMaterial) -> None:
     import matplotlib as mpl
 
@@ -153,11 +154,11 @@ def test_no_two_conditions_share_a_colour_nor_a_grey() -> None:
 
 
 def test_every_bar_stands_on_zero_and_is_as_high_as_the_mean(
-    material: StudyMaterial,
+    material: StudyMaterial, exhibits: list[Exhibit]
 ) -> None:
+    by_name = {each.name: each for each in exhibits}
     for quantity in QUANTITIES:
-        with styled():
-            panel = panels(bars.draw(material, quantity))[-1]
+        panel = panels(by_name[bars.file_name(quantity)])[-1]
         table = getattr(material, quantity.table)
         own = table.groupby(["condition", "participant"])[quantity.name].mean()
         means = own.groupby(level=0).mean() * quantity.factor
@@ -231,9 +232,10 @@ def test_a_difference_is_that_of_the_same_participants_from_their_own_manual() -
     np.testing.assert_allclose(mean.half_width, 12.706 * 0.1, rtol=1e-4)
 
 
-def test_differences_are_drawn_below_the_trajectories(material: StudyMaterial) -> None:
-    with styled():
-        exhibit = trajectories.draw(material)
+def test_differences_are_drawn_below_the_trajectories(
+    exhibits: list[Exhibit],
+) -> None:
+    (exhibit,) = (each for each in exhibits if each.name == "trajectories")
     assert len(panels(exhibit)) == 12
     labels = [axes.get_ylabel() for axes in panels(exhibit) if axes.get_ylabel()]
     assert labels == ["Lateral position [m]", "Minus manual [m]"] * 2
@@ -311,6 +313,7 @@ def test_without_triggers_detection_is_not_drawn(material: StudyMaterial) -> Non
     assert detection.draw(without).missing
 
 
+@pytest.mark.slow
 def test_the_participant_shown_is_the_first_with_most_conditions(
     material: StudyMaterial,
 ) -> None:

@@ -55,7 +55,7 @@ def whole(tmp_path_factory: pytest.TempPathFactory) -> dict[str, bytes]:
     return contents(folder)
 
 
-@pytest.mark.parametrize("total", [2, 3, 8])
+@pytest.mark.parametrize("total", [2, pytest.param(3, marks=pytest.mark.slow), 8])
 def test_shards_of_one_folder_make_the_same_study(
     tmp_path: Path, whole: dict[str, bytes], total: int
 ) -> None:
@@ -137,7 +137,7 @@ def other_world(setup: TrialSetup) -> TrialRecord:
     return made._replace(columns=columns)
 
 
-@pytest.mark.parametrize("records", [True, False])
+@pytest.mark.parametrize("records", [True, pytest.param(False, marks=pytest.mark.slow)])
 def test_a_repeated_shard_of_other_bytes_is_refused(
     tmp_path: Path, records: bool
 ) -> None:
@@ -177,6 +177,7 @@ def test_several_folders_need_a_place(tmp_path: Path) -> None:
         merged()
 
 
+@pytest.mark.slow
 def test_failed_trials_are_rows_and_make_way_for_done_ones(
     tmp_path: Path, whole: dict[str, bytes]
 ) -> None:
@@ -194,6 +195,7 @@ def test_failed_trials_are_rows_and_make_way_for_done_ones(
     assert contents(tmp_path / "all") == whole
 
 
+@pytest.mark.slow
 def test_a_shard_at_work_lets_others_work_but_nobody_merge(tmp_path: Path) -> None:
     run_shard(tmp_path, 2, 2)
     command = [sys.executable, "-c", HOLD, str(tmp_path)]

@@ -275,7 +275,9 @@ def test_study_without_lane_changes_still_has_its_trials_tested() -> None:
         ("manual", "strong-rapid", "weak-normal"),
     ],
 )
-@pytest.mark.parametrize("num_participants", [1, 2, 3])
+@pytest.mark.parametrize(
+    "num_participants", [1, 2, pytest.param(3, marks=pytest.mark.slow)]
+)
 def test_small_studies_work_with_what_they_have(
     conditions: tuple[str, ...], num_participants: int
 ) -> None:

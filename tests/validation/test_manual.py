@@ -72,6 +72,7 @@ def test_nearly_all_planned_lane_changes_are_achieved() -> None:
     assert 0.95 * dozen.planned_changes <= len(dozen.changes) <= dozen.planned_changes
 
 
+@pytest.mark.slow
 def test_drivers_do_not_depend_on_how_many_drive_at_once() -> None:
     alone = drive_population(FRESH_SEED, 2, jobs=1)
     assert repr(alone.trials) == repr(driving(12).trials[:2])

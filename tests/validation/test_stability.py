@@ -239,6 +239,7 @@ def test_with_the_drivers_noise_dry_friction_hardly_adds_to_the_drift() -> None:
     assert with_it < 1.1 * without
 
 
+@pytest.mark.slow
 def test_progress_counts_drivers_and_threads_change_nothing() -> None:
     told: list[int] = []
     alone = driver_stability(PILOT_SEED, 2, jobs=1, progress=told.append)
