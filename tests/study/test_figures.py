@@ -191,8 +191,16 @@ def test_a_rate_that_is_cut_at_zero_is_told(material: StudyMaterial) -> None:
         assert ("cut at zero" in caption) == told
 
 
-def test_trajectories_meet_the_line_at_the_crossing(material: StudyMaterial) -> None:
-    means = trajectories.mean_trajectories(material)
+@pytest.fixture(scope="module")
+def means(material: StudyMaterial) -> dict[trajectories.Key, trajectories.Mean]:
+    """Mean trajectory of every condition and direction."""
+    own = trajectories.own_trajectories(material)
+    return {key: trajectories.mean_of(each) for key, each in own.items()}
+
+
+def test_trajectories_meet_the_line_at_the_crossing(
+    means: dict[trajectories.Key, trajectories.Mean],
+) -> None:
     assert set(means) == {(name, way) for name in CONDITION_NAMES for way in (-1, 1)}
     for mean in means.values():
         # Linear between two of the 10 Hz places, in which the car curves by 1 cm.
@@ -201,15 +209,16 @@ def test_trajectories_meet_the_line_at_the_crossing(material: StudyMaterial) -> 
         )
 
 
-def test_trajectories_count_every_lane_change(material: StudyMaterial) -> None:
-    means = trajectories.mean_trajectories(material)
+def test_trajectories_count_every_lane_change(
+    material: StudyMaterial, means: dict[trajectories.Key, trajectories.Mean]
+) -> None:
     assert sum(mean.changes for mean in means.values()) == len(material.lane_changes)
 
 
 def test_the_band_is_the_interval_of_participants_means(
-    material: StudyMaterial,
+    means: dict[trajectories.Key, trajectories.Mean],
 ) -> None:
-    mean = trajectories.mean_trajectories(material)["manual", -1]
+    mean = means["manual", -1]
     assert mean.participants == 3
     assert np.all(mean.half_width >= 0.0)
 

@@ -98,6 +98,7 @@ def test_a_system_that_yields_is_overruled_with_less_torque_and_way() -> None:
         assert (real.deviation < other.deviation).all()
 
 
+@pytest.mark.slow
 def test_a_faster_change_takes_more_torque() -> None:
     peaks = [trio()[duration, "fades out"].peak_torque for duration in (4.0, 6.0)]
     assert (peaks[0] > peaks[1]).all()
