@@ -134,6 +134,7 @@ class SleepingWheel(PedalWheel):
         return super().read()
 
 
+@pytest.mark.slow
 def test_a_wheel_that_is_asleep_is_turned_first(
     user: User, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -269,6 +269,7 @@ def test_the_worst_drive_is_kept_as_a_record(finished: Path) -> None:
     assert float(first["time"]) == record.columns["time"][-30]
 
 
+@pytest.mark.slow
 def test_records_are_kept_if_asked_for(tmp_path: Path) -> None:
     run_small(tmp_path, SMALL._replace(keep_records=True))
     assert len(list((tmp_path / "records").rglob("*.parquet"))) == NUM_TRIALS

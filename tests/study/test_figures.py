@@ -181,6 +181,7 @@ def test_an_interval_that_is_cut_at_zero_is_told(material: StudyMaterial) -> Non
             assert (cut in bars.draw(study, sdlp).caption) == told
 
 
+@pytest.mark.slow
 def test_a_rate_that_is_cut_at_zero_is_told(material: StudyMaterial) -> None:
     for missed, told in ((np.arange(21) % 3 == 0, True), (np.ones(21), False)):
         trials = material.trials.assign(
@@ -250,6 +251,7 @@ def test_differences_are_drawn_below_the_trajectories(
     assert labels == ["Lateral position [m]", "Minus manual [m]"] * 2
 
 
+@pytest.mark.slow
 def test_without_manual_there_is_no_difference_to_draw(material: StudyMaterial) -> None:
     changes = material.lane_changes.query("condition != 'manual'")
     with styled():

@@ -55,7 +55,14 @@ def whole(tmp_path_factory: pytest.TempPathFactory) -> dict[str, bytes]:
     return contents(folder)
 
 
-@pytest.mark.parametrize("total", [2, pytest.param(3, marks=pytest.mark.slow), 8])
+@pytest.mark.parametrize(
+    "total",
+    [
+        2,
+        pytest.param(3, marks=pytest.mark.slow),
+        pytest.param(8, marks=pytest.mark.slow),
+    ],
+)
 def test_shards_of_one_folder_make_the_same_study(
     tmp_path: Path, whole: dict[str, bytes], total: int
 ) -> None:
@@ -74,6 +81,7 @@ def test_a_shard_goes_on_where_it_was(tmp_path: Path) -> None:
     assert (outcome.num_trials, outcome.num_resumed) == (3, 2)
 
 
+@pytest.mark.slow
 def test_shards_with_a_folder_each_are_put_together(
     tmp_path: Path, whole: dict[str, bytes]
 ) -> None:
@@ -114,6 +122,7 @@ def test_missing_trials_are_named_and_nothing_is_written(tmp_path: Path) -> None
     assert not (tmp_path / "out").exists()
 
 
+@pytest.mark.slow
 def test_a_repeated_shard_of_equal_bytes_is_told(
     tmp_path: Path, whole: dict[str, bytes]
 ) -> None:

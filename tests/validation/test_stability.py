@@ -164,7 +164,10 @@ def test_the_damping_is_far_from_the_bound() -> None:
     assert least_damped(poles(matrices))[0].min() > 0.2
 
 
-@pytest.mark.parametrize("car", CARS)
+@pytest.mark.parametrize(
+    "car",
+    [c if c == "default" else pytest.param(c, marks=pytest.mark.slow) for c in CARS],
+)
 def test_no_driver_swings_in_any_car_at_any_speed(car: str) -> None:
     for speed in SPEEDS:
         matrices = hundred(car, speed)
