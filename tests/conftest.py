@@ -111,7 +111,10 @@ def pytest_collection_finish() -> None:
     gc.enable()
 
 
-SHARED = re.compile(r"tests/(architecture)/|tests/(study)/test_(?:figures|report)\.py")
+SHARED = re.compile(
+    r"tests/(architecture)/|tests/(study)/test_(?:agreement|disputes|episodes|figures|"
+    r"findings|network_table|overview|partial_report|report|trigger_table)\.py"
+)
 """Files that share what is made once: syntax trees, and a study that is drawn."""
 
 
@@ -161,6 +164,14 @@ def few_resamplings(monkeypatch: pytest.MonkeyPatch) -> None:
         "resamplings",
         lambda drivers, number, seed: whole(drivers, min(number, 50), seed),
     )
+
+
+@pytest.fixture
+def undrawn(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Figures of which only an empty file is written, for tests of what is beside."""
+    from costeer.pages import frame
+
+    monkeypatch.setattr(frame, "svg_text", lambda *_: '<svg viewBox="0 0 1 1"></svg>')
 
 
 @pytest.fixture(scope="session")

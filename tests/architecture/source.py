@@ -39,13 +39,19 @@ def tree(file: Path) -> ast.Module:
 
 
 @cache
+def nodes(file: Path) -> tuple[ast.AST, ...]:
+    """Every node of a file's syntax tree."""
+    return tuple(ast.walk(tree(file)))
+
+
+@cache
 def functions(folder: Path = PACKAGE) -> tuple[Function, ...]:
     """Every function below a folder, methods and inner functions included."""
     kinds = ast.FunctionDef | ast.AsyncFunctionDef
     return tuple(
         Function(file, node)
         for file in files(folder)
-        for node in ast.walk(tree(file))
+        for node in nodes(file)
         if isinstance(node, kinds)
     )
 
@@ -60,6 +66,6 @@ def argument_names(function: Function) -> list[str]:
 def parameter_classes() -> Iterator[tuple[Path, ast.ClassDef]]:
     """Every named tuple whose name ends in `Parameters`."""
     for file in files():
-        for node in ast.walk(tree(file)):
+        for node in nodes(file):
             if isinstance(node, ast.ClassDef) and node.name.endswith("Parameters"):
                 yield file, node

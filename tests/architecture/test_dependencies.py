@@ -9,7 +9,7 @@ import tomllib
 from functools import cache
 from importlib.metadata import packages_distributions
 
-from tests.architecture.source import ROOT, files, tree
+from tests.architecture.source import ROOT, files, nodes
 
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]
 
@@ -40,7 +40,7 @@ def imported() -> frozenset[str]:
     """Names of the distributions that package and benchmarks import, anywhere."""
     owners, found = packages_distributions(), set()
     for file in [*files(), *files(ROOT / "benchmarks")]:
-        for node in ast.walk(tree(file)):
+        for node in nodes(file):
             names = []
             if isinstance(node, ast.Import):
                 names = [alias.name for alias in node.names]

@@ -6,7 +6,7 @@ import ast
 from collections.abc import Iterator
 from pathlib import Path
 
-from tests.architecture.source import PACKAGE, files, tree
+from tests.architecture.source import PACKAGE, files, nodes
 
 RIM = {"cli", "devices", "doctor", "runtime", "sessions", "testing", "web", "__main__"}
 """Rooms with a clock, devices and printing; `testing` tells how fast a method is."""
@@ -25,7 +25,7 @@ def room(file: Path) -> str:
 
 def imported(file: Path) -> Iterator[str]:
     """Full names of the modules that a file imports."""
-    for node in ast.walk(tree(file)):
+    for node in nodes(file):
         if isinstance(node, ast.Import):
             yield from (alias.name for alias in node.names)
         elif isinstance(node, ast.ImportFrom) and node.module:
@@ -39,7 +39,7 @@ def calls(file: Path, name: str) -> bool:
         isinstance(node, ast.Call)
         and isinstance(node.func, ast.Name)
         and node.func.id == name
-        for node in ast.walk(tree(file))
+        for node in nodes(file)
     )
 
 

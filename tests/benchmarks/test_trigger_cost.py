@@ -111,12 +111,14 @@ def test_a_missed_change_meets_a_guidance_that_keeps_the_old_lane() -> None:
     assert np.median(missed["driver_torque_rms"]) > np.median(told["driver_torque_rms"])
 
 
+@pytest.mark.slow
 def test_threads_change_no_number() -> None:
     again = provoke(SEED, 1, DRIVEN[1:2], jobs=1)
     assert [each.event for each in again] == list(EVENTS)
     assert all(alike(each, found("strong-rapid", each.event)) for each in again)
 
 
+@pytest.mark.slow
 def test_progress_tells_each_driver_of_each_condition() -> None:
     told: list[int] = []
     provoke(SEED, 1, ("manual",), progress=told.append)

@@ -48,6 +48,7 @@ def test_json_lists_each_driver(capsys: pytest.CaptureFixture[str]) -> None:
     assert strongest["correlation"] == pytest.approx(0.42)
 
 
+@pytest.mark.slow
 def test_validation_prints_every_target_and_draws(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

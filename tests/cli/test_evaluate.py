@@ -182,6 +182,7 @@ def test_a_folder_with_other_things_is_refused_before_judging(
     assert "holds thesis.tex" in refusal(capsys)
 
 
+@pytest.mark.slow
 def test_the_same_command_gives_the_same_bytes(
     source: Path, weights: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -223,6 +224,7 @@ def as_another_lab(source: Path, folder: Path) -> Path:
     return path
 
 
+@pytest.mark.slow
 def test_a_table_of_another_lab_is_judged_as_the_same_drives_in_our_names(
     source: Path, weights: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -26,8 +26,8 @@ def test_help_takes_under_half_a_second_of_a_processor() -> None:
         "import time; from costeer.cli import main; main(['--help']); "
         "print(time.process_time())"
     )
-    took = [float(run_python(code).stdout.splitlines()[-1]) for _ in range(3)]
-    assert min(took) < 0.5
+    took = (float(run_python(code).stdout.splitlines()[-1]) for _ in range(3))
+    assert any(seconds < 0.5 for seconds in took)
 
 
 def test_help_imports_nothing_heavy() -> None:

@@ -26,6 +26,7 @@ def trial(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return path
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(os.name != "posix", reason="signals another process by SIGINT")
 def test_it_prints_the_address_answers_and_stops_at_ctrl_c(trial: Path) -> None:
     words = [sys.executable, "-m", "costeer", "replay", str(trial)]

@@ -42,6 +42,7 @@ def test_the_same_options_give_the_same_bytes_and_others_replace_them(
     assert read_record(second).metadata["seed"] == 2
 
 
+@pytest.mark.slow
 def test_manual_driving_has_no_guidance(tmp_path: Path) -> None:
     assert simulate(tmp_path / "m.parquet", "--condition", "manual") == 0
     record = read_record(tmp_path / "m.parquet")

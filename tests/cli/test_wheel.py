@@ -134,6 +134,7 @@ class SleepingWheel(PedalWheel):
         return super().read()
 
 
+@pytest.mark.slow
 def test_a_wheel_that_is_asleep_is_turned_first(
     user: User, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -176,6 +177,7 @@ def test_without_turns_a_wheel_is_not_mirrored(user: User) -> None:
     assert (found.angle_sign, found.torque_sign) == (-1.0, -1.0)
 
 
+@pytest.mark.slow
 def test_a_weight_on_a_wheel_that_is_not_in_the_table(user: User) -> None:
     mass = 0.7 / 9.81 / 0.14  # what the user's weight of 0.7 N·m is
     words = ("--weight", f"{mass:.6f}", "--radius", "0.14", "--no-pedals")

@@ -6,6 +6,7 @@ import csv
 import hashlib
 import json
 import os
+import shutil
 import signal
 import subprocess
 import sys
@@ -50,18 +51,29 @@ def rows(folder: Path) -> list[dict[str, str]]:
 
 
 @pytest.fixture(scope="module")
-def whole(tmp_path_factory: pytest.TempPathFactory) -> dict[str, bytes]:
-    """What the small comparison holds when nothing disturbs it."""
+def finished(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The small comparison when nothing disturbs it; read only."""
     folder = tmp_path_factory.mktemp("whole")
     run_small(folder)
-    return contents(folder)
+    return folder
 
 
-def test_there_is_a_row_for_each_method_road_and_driver(tmp_path: Path) -> None:
-    run_small(tmp_path)
+@pytest.fixture(scope="module")
+def whole(finished: Path) -> dict[str, bytes]:
+    """What the small comparison holds when nothing disturbs it."""
+    return contents(finished)
+
+
+@pytest.fixture
+def again(finished: Path, tmp_path: Path) -> Path:
+    """A copy of the finished comparison, to be changed and run again."""
+    return Path(shutil.copytree(finished, tmp_path / "again"))
+
+
+def test_there_is_a_row_for_each_method_road_and_driver(finished: Path) -> None:
     found = [
         (r["method"], r["scenario"], r["mistake"], r["participant"])
-        for r in rows(tmp_path)
+        for r in rows(finished)
     ]
     assert found == [
         (method, scenario, "none", str(participant))
@@ -83,19 +95,19 @@ def test_methods_meet_the_same_driver_seed_noise_and_road(tmp_path: Path) -> Non
     assert all(each == {"manual", "ibhs"} for each in pairs.values())
 
 
+@pytest.mark.slow
 def test_jobs_do_not_change_a_byte(tmp_path: Path, whole: dict[str, bytes]) -> None:
     run_small(tmp_path, jobs=3)
     assert contents(tmp_path) == whole
 
 
 def test_a_finished_comparison_runs_no_trial_again(
-    tmp_path: Path, whole: dict[str, bytes]
+    again: Path, whole: dict[str, bytes]
 ) -> None:
-    run_small(tmp_path)
     asked, simulate = counted()
-    assert run_small(tmp_path, simulate=simulate) == NUM_TRIALS
+    assert run_small(again, simulate=simulate) == NUM_TRIALS
     assert asked == []
-    assert contents(tmp_path) == whole
+    assert contents(again) == whole
 
 
 def test_an_interruption_keeps_whole_blocks_and_no_part_of_one(
@@ -161,14 +173,13 @@ def with_a_driver_less(file: Path) -> None:
     ],
 )
 def test_results_that_are_not_the_block_s_are_not_believed(
-    tmp_path: Path, whole: dict[str, bytes], damage: Callable[[Path], None]
+    again: Path, whole: dict[str, bytes], damage: Callable[[Path], None]
 ) -> None:
-    run_small(tmp_path)
-    damage(min((tmp_path / "results").iterdir()))
+    damage(min((again / "results").iterdir()))
     asked, simulate = counted()
-    assert run_small(tmp_path, simulate=simulate) == NUM_TRIALS - BLOCK
+    assert run_small(again, simulate=simulate) == NUM_TRIALS - BLOCK
     assert len(asked) == BLOCK
-    assert contents(tmp_path) == whole
+    assert contents(again) == whole
 
 
 KILLED = """
@@ -184,6 +195,7 @@ run_comparison(sys.argv[1], SMALL, jobs=1, report=None, simulate=killed)
 """
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(os.name != "posix", reason="needs SIGKILL")
 def test_a_killed_comparison_goes_on_where_it_was(
     tmp_path: Path, whole: dict[str, bytes]
@@ -228,25 +240,22 @@ def test_a_full_disk_stops_and_is_no_result(tmp_path: Path) -> None:
     ],
 )
 def test_the_folder_of_another_comparison_is_refused(
-    tmp_path: Path, changed: dict[str, object], told: str
+    again: Path, changed: dict[str, object], told: str
 ) -> None:
-    run_small(tmp_path)
     with pytest.raises(ValueError, match=told):
-        run_small(tmp_path, SMALL._replace(**changed))
+        run_small(again, SMALL._replace(**changed))
 
 
-def test_an_edited_compare_yaml_is_refused(tmp_path: Path) -> None:
-    run_small(tmp_path)
-    file = tmp_path / "compare.yaml"
+def test_an_edited_compare_yaml_is_refused(again: Path) -> None:
+    file = again / "compare.yaml"
     file.write_text(file.read_text().replace("seed: 1", "seed: 2"))
     with pytest.raises(ValueError, match="was edited: its hash does not fit"):
-        run_small(tmp_path, SMALL._replace(seed=2))
+        run_small(again, SMALL._replace(seed=2))
 
 
-def test_the_worst_drive_is_kept_as_a_record(tmp_path: Path) -> None:
-    run_small(tmp_path)
+def test_the_worst_drive_is_kept_as_a_record(finished: Path) -> None:
     # Of the made-up drives manual ones of a cut-in hit; driver 3 is the first of them.
-    with (tmp_path / "worst.csv").open(encoding="utf-8", newline="") as stream:
+    with (finished / "worst.csv").open(encoding="utf-8", newline="") as stream:
         first = next(csv.DictReader(stream))
     assert (first["method"], first["scenario"], first["participant"]) == (
         "manual",
@@ -254,12 +263,13 @@ def test_the_worst_drive_is_kept_as_a_record(tmp_path: Path) -> None:
         "3",
     )
     assert first["what"] == "car"
-    record = read_record(tmp_path / "worst" / first["record"])
+    record = read_record(finished / "worst" / first["record"])
     assert record.metadata["participant"] == 3
     assert HASH_FIELD in record.metadata
     assert float(first["time"]) == record.columns["time"][-30]
 
 
+@pytest.mark.slow
 def test_records_are_kept_if_asked_for(tmp_path: Path) -> None:
     run_small(tmp_path, SMALL._replace(keep_records=True))
     assert len(list((tmp_path / "records").rglob("*.parquet"))) == NUM_TRIALS

@@ -146,7 +146,9 @@ def test_a_look_that_is_due_waits_for_the_glance_under_way() -> None:
     assert np.ptp(waits[busy]) > 0.5  # at whatever time of the glance
 
 
-@pytest.mark.parametrize("preparation", [0.1, 0.35, 1.8])
+@pytest.mark.parametrize(
+    "preparation", [0.1, pytest.param(0.35, marks=pytest.mark.slow), 1.8]
+)
 def test_glances_never_overlap(preparation: float) -> None:
     begins = heads(preparation).begins
     for one in begins.T:

@@ -196,6 +196,7 @@ def test_report_holds_tables_figures_and_records_that_replay(tmp_path: Path) -> 
 KEEPING = str(Path(__file__).parents[2] / "examples/methods/pi_keeping.py")
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_a_method_of_a_file_has_its_name_and_what_it_never_comes_to(
     tmp_path: Path,
 ) -> None:

@@ -56,6 +56,7 @@ def test_the_truth_is_likelier_than_a_driver_far_from_it(
     assert there < log_likelihood_of_the_truth(1)
 
 
+@pytest.mark.slow
 def test_the_information_is_that_of_the_scores() -> None:
     # The sum of squared scores estimates the same information; its largest deviation
     # over the diagonal is some sqrt(2/15000) = 1 %, more where single samples weigh.

@@ -122,7 +122,7 @@ def balances(
     return np.array(felt), np.array(told)
 
 
-@pytest.mark.parametrize("steps", [1, 8, 16])
+@pytest.mark.parametrize("steps", [1, 8, pytest.param(16, marks=pytest.mark.slow)])
 def test_hands_give_the_column_its_momentum(
     steps: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:

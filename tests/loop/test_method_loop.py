@@ -189,9 +189,9 @@ def test_two_methods_of_one_name_are_refused(
         (0.0, NO_FAULT, 0.0),
         (-5.0, NO_FAULT, -5.0),
         (math.nan, NOT_FINITE, 0.0),
-        (-math.inf, NOT_FINITE, 0.0),
+        pytest.param(-math.inf, NOT_FINITE, 0.0, marks=pytest.mark.slow),
         (50.0, OVER_LIMIT, 5.0),
-        (-50.0, OVER_LIMIT, -5.0),
+        pytest.param(-50.0, OVER_LIMIT, -5.0, marks=pytest.mark.slow),
     ],
 )
 def test_a_torque_that_cannot_be_given_is_contained_and_told(

@@ -84,7 +84,7 @@ def test_a_torque_acts_one_control_step_after_its_measurement() -> None:
 
 
 def test_finer_plant_steps_change_a_run_little() -> None:
-    coarse, fine = (run(hands_off_loop(0.5, n), 120)[-1] for n in (8, 64))
+    coarse, fine = (run(hands_off_loop(0.5, n), 120)[-1] for n in (8, 24))
     here, there = (s.world.vehicle.lateral_position for s in (coarse, fine))
     # The implicit column is of first order: 1/480 s against 25 ms of its own.
     assert here == pytest.approx(there, abs=2e-3)

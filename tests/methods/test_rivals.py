@@ -30,7 +30,7 @@ every_rival = pytest.mark.parametrize("method", RIVALS, ids=[m.name for m in RIV
     "name",
     [
         m.name
-        if m.name in ("bandwidth", "inclusion")
+        if m.name == "bandwidth"
         else pytest.param(m.name, marks=pytest.mark.slow)
         for m in RIVALS
     ],

@@ -232,6 +232,7 @@ def test_a_lane_change_of_another_car_is_smooth_and_ends_in_the_centre() -> None
     assert middle == pytest.approx(0.2 - 1.75, abs=0.05)
 
 
+@pytest.mark.slow
 def test_a_car_that_follows_keeps_its_distance_to_the_driven_car() -> None:
     behind = there(-50.0, velocity=23.0, desired=30.0, follows=1.0)
     history = drive(fleet_parameters([behind]), 45.0)
@@ -326,6 +327,7 @@ def ring(speeds: list[float], reach: float) -> FleetParameters:
     )
 
 
+@pytest.mark.slow
 def test_a_stream_does_not_thin_out() -> None:
     # 40 m to each car: less than following keeps free to both sides of a newcomer.
     history = drive(ring([24.0, 17.0, 23.0, 18.0, 22.0], reach=100.0), 40.0)

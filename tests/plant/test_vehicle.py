@@ -113,7 +113,9 @@ def test_a_sliding_car_loses_energy_only() -> None:
 
 
 @pytest.mark.parametrize("name", sorted(CARS))
-@pytest.mark.parametrize("speed", [50.0 / 3.6, 110.0 / 3.6])
+@pytest.mark.parametrize(
+    "speed", [pytest.param(50.0 / 3.6, marks=pytest.mark.slow), 110.0 / 3.6]
+)
 def test_a_gentle_turn_settles_to_the_steady_relations(name: str, speed: float) -> None:
     # A straight-ahead drive holds the speed to 1e-5 in so gentle a turn.
     car, curvature = CARS[name], 1e-6

@@ -78,7 +78,7 @@ def records(draw: st.DrawFn) -> TrialRecord:
     return TrialRecord(metadata, draw(values))
 
 
-@settings(max_examples=10)
+@settings(max_examples=5)
 @given(records())
 def test_what_is_written_is_read_back_bit_for_bit(
     tmp_path_factory: pytest.TempPathFactory, written: TrialRecord

@@ -292,7 +292,7 @@ def test_each_batch_bears_the_checksum_of_what_a_reader_finds(tmp_path: Path) ->
     stream.write(rows(0, 15), np.arange(15) < 5, [])
     stream.write(rows(15, 7), np.full(7, True), [])
     stream.write(rows(22, 0), np.full(0, True), [])
-    stream.write_trace(np.random.default_rng(1).normal(size=(33, len(TRACE_COLUMNS))))
+    stream.add_trace(np.random.default_rng(1).normal(size=(33, len(TRACE_COLUMNS))))
     stream.close()
     found = [*checksums(paths.stream), *checksums(paths.trace_stream)]
     assert [int(told) for told, _ in found] == [total for _, total in found]
@@ -304,7 +304,8 @@ def test_trace_of_a_drive_that_was_cut_off_becomes_parquet(
 ) -> None:
     paths = record_paths(tmp_path / "t.parquet")
     stream = RecordStream(paths, METADATA)
-    stream.write_trace(np.ones((32, len(TRACE_COLUMNS))))
+    stream.add_trace(np.ones((32, len(TRACE_COLUMNS))))
+    stream.flush()
     stream._file.close()  # and no word of an end
     stream._trace_file.close()
     out = tmp_path / "saved.parquet"

@@ -173,6 +173,7 @@ def test_wheel_is_let_go_and_the_record_kept_when_the_loop_dies_or_sticks(
     assert cell[0] == 0.0
 
 
+@pytest.mark.slow
 @needs_posix
 def test_nobody_drives_on_when_the_watchdog_is_gone(begin: Begin) -> None:
     drive, kept = begin(drive_setup(), None)

@@ -148,6 +148,7 @@ if os.path.exists(maps):
 """
 
 
+@pytest.mark.slow
 def test_a_key_pressed_while_the_drive_ends_kills_nobody() -> None:
     """In a process of its own: it would take this one with it."""
     done = subprocess.run(

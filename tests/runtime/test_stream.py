@@ -63,7 +63,7 @@ def test_streams_become_the_record_with_its_markers_and_the_trace(
     stream.write(rows(15, 15), np.arange(15) < 5, [gain])
     ended = Marker("ended", "course", time=0.5)
     stream.write(rows(30, 0), np.full(0, True), [ended])
-    stream.write_trace(np.ones((32, len(TRACE_COLUMNS))))
+    stream.add_trace(np.ones((32, len(TRACE_COLUMNS))))
     stream.close()
     assert finish(paths, stream.num_rows)
     record = read_record(paths.record)

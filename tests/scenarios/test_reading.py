@@ -201,7 +201,7 @@ def test_the_inner_lane_of_a_curve_is_what_is_too_tight() -> None:
         b"name: !!int ''\n",
         b"name: !!python/object:os.system x\n",
         b"\xff\xfe\x00",
-        b"[" * 1500,
+        b"[" * 700,
         b"name: x\nroad: {length: 1" + b"0" * 400 + b"}\n",
         b"name: " + b"x" * 100_000 + b"\n",
     ],

@@ -124,6 +124,7 @@ def test_an_analysis_goes_on_where_it_stopped(tmp_path: Path) -> None:
         drive_all(tmp_path, SMALL._replace(seed=2), 1, ignore, made_up)
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_a_report_has_every_measure_and_says_what_is_missing(tmp_path: Path) -> None:
     outcomes = drive_all(tmp_path, SMALL, 1, ignore, made_up)
     page = write_report(tmp_path, SMALL, outcomes).read_text("utf-8")

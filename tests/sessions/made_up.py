@@ -13,6 +13,7 @@ from costeer.sessions.attempts import Attempts
 from costeer.sessions.plan import Step
 from costeer.sessions.questionnaires.definition import load_definition
 from costeer.sessions.session import Session
+from costeer.sessions.store import Row
 from costeer.study.quantities import WORKLOAD_ITEMS
 from tests.study.synthetic import synthetic_record
 
@@ -43,6 +44,22 @@ FACTS = {
     "head": None,
     "checks": [{"name": "Free space", "well": True, "told": "", "utc": ""}],
 }
+
+
+def rows_of(session: Session, participant: str) -> list[Row]:
+    """Rows of every table of the store that names this participant."""
+    tables = session.store.rows(
+        "SELECT tables.name FROM sqlite_master AS tables "
+        "JOIN pragma_table_info(tables.name) AS columns "
+        "ON columns.name = 'participant' WHERE tables.type = 'table'"
+    )
+    assert len(tables) > 3
+    query = "SELECT * FROM {} WHERE participant = ?"
+    return [
+        row
+        for table in tables
+        for row in session.store.rows(query.format(table["name"]), participant)
+    ]
 
 
 def made_up_session(

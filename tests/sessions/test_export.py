@@ -135,6 +135,7 @@ def test_matlab_reads_what_the_record_holds(studied: Path, tmp_path: Path) -> No
     assert json.loads(str(found["metadata"]))["participant"] == "P01"
 
 
+@pytest.mark.slow
 def test_the_same_record_gives_the_same_bytes(tmp_path: Path) -> None:
     session = made_up_session(tmp_path / "s", ["P01"], ["manual", "weak-gentle"])
     session.close()
@@ -207,6 +208,7 @@ def test_a_study_that_nobody_finished_still_gives_its_answers(tmp_path: Path) ->
     assert log.count("not driven yet") == 2
 
 
+@pytest.mark.slow
 def test_the_trace_of_the_wheel_goes_along(tmp_path: Path) -> None:
     folder = tmp_path / "s"
     session = made_up_session(folder, ["P01"], ["manual", "weak-gentle"])

@@ -75,6 +75,7 @@ def test_every_trial_stands_in_the_tables_with_what_tells_it_from_others(
     assert {each.label for each in people.apart["obstacle"].drives} == set(LABELS[4:])
 
 
+@pytest.mark.slow
 def test_other_programs_get_a_file_for_every_trial(
     driven: Path, tmp_path: Path
 ) -> None:

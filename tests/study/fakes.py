@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import time
 from collections.abc import Callable
+from functools import lru_cache
 from pathlib import Path
 
 from costeer.loop.scenario import TrialSetup
@@ -23,11 +24,14 @@ SMALL = StudySettings(
 NUM_TRIALS = 6
 
 
+@lru_cache(maxsize=64)
+def _drive(condition: str, participant: int, seed: int, length: float) -> TrialRecord:
+    return synthetic_record(condition, participant, seed, length)
+
+
 def made_up(setup: TrialSetup) -> TrialRecord:
     """A record that depends on the setup alone, as a simulated one does."""
-    return synthetic_record(
-        setup.condition, setup.participant, setup.seed, length=float(setup.length)
-    )
+    return _drive(setup.condition, setup.participant, setup.seed, float(setup.length))
 
 
 def held_up(setup: TrialSetup, gate: str) -> TrialRecord:

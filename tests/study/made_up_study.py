@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import cache
 
 import numpy as np
 from numpy.typing import NDArray
 
 from costeer.methods.conditions import CONDITION_NAMES
+from costeer.study.outcome import StudyTests
+from costeer.study.statistics import study_tests
 
 Columns = dict[str, NDArray[np.generic]]
 
@@ -53,6 +56,12 @@ def made_up_study(
             noise = rng.normal(size=who.size * repeats)
             table[measure] = 10.0 + np.repeat(cell, repeats) + noise
     return trials, changes
+
+
+@cache
+def usual_outcome() -> StudyTests:
+    """What is found in the study that most tests look at."""
+    return study_tests(*made_up_study())
 
 
 def without(table: Columns, rows: NDArray[np.bool_]) -> Columns:

@@ -125,6 +125,7 @@ def test_every_figure_is_described_for_those_who_do_not_see_it(
         assert exhibit.description.endswith(".")
 
 
+@pytest.mark.slow
 def test_a_style_of_the_user_changes_nothing(material: StudyMaterial) -> None:
     import matplotlib as mpl
 
@@ -153,11 +154,11 @@ def test_no_two_conditions_share_a_colour_nor_a_grey() -> None:
 
 
 def test_every_bar_stands_on_zero_and_is_as_high_as_the_mean(
-    material: StudyMaterial,
+    material: StudyMaterial, exhibits: list[Exhibit]
 ) -> None:
+    by_name = {each.name: each for each in exhibits}
     for quantity in QUANTITIES:
-        with styled():
-            panel = panels(bars.draw(material, quantity))[-1]
+        panel = panels(by_name[bars.file_name(quantity)])[-1]
         table = getattr(material, quantity.table)
         own = table.groupby(["condition", "participant"])[quantity.name].mean()
         means = own.groupby(level=0).mean() * quantity.factor
@@ -180,6 +181,7 @@ def test_an_interval_that_is_cut_at_zero_is_told(material: StudyMaterial) -> Non
             assert (cut in bars.draw(study, sdlp).caption) == told
 
 
+@pytest.mark.slow
 def test_a_rate_that_is_cut_at_zero_is_told(material: StudyMaterial) -> None:
     for missed, told in ((np.arange(21) % 3 == 0, True), (np.ones(21), False)):
         trials = material.trials.assign(
@@ -190,8 +192,16 @@ def test_a_rate_that_is_cut_at_zero_is_told(material: StudyMaterial) -> None:
         assert ("cut at zero" in caption) == told
 
 
-def test_trajectories_meet_the_line_at_the_crossing(material: StudyMaterial) -> None:
-    means = trajectories.mean_trajectories(material)
+@pytest.fixture(scope="module")
+def means(material: StudyMaterial) -> dict[trajectories.Key, trajectories.Mean]:
+    """Mean trajectory of every condition and direction."""
+    own = trajectories.own_trajectories(material)
+    return {key: trajectories.mean_of(each) for key, each in own.items()}
+
+
+def test_trajectories_meet_the_line_at_the_crossing(
+    means: dict[trajectories.Key, trajectories.Mean],
+) -> None:
     assert set(means) == {(name, way) for name in CONDITION_NAMES for way in (-1, 1)}
     for mean in means.values():
         # Linear between two of the 10 Hz places, in which the car curves by 1 cm.
@@ -200,15 +210,16 @@ def test_trajectories_meet_the_line_at_the_crossing(material: StudyMaterial) -> 
         )
 
 
-def test_trajectories_count_every_lane_change(material: StudyMaterial) -> None:
-    means = trajectories.mean_trajectories(material)
+def test_trajectories_count_every_lane_change(
+    material: StudyMaterial, means: dict[trajectories.Key, trajectories.Mean]
+) -> None:
     assert sum(mean.changes for mean in means.values()) == len(material.lane_changes)
 
 
 def test_the_band_is_the_interval_of_participants_means(
-    material: StudyMaterial,
+    means: dict[trajectories.Key, trajectories.Mean],
 ) -> None:
-    mean = trajectories.mean_trajectories(material)["manual", -1]
+    mean = means["manual", -1]
     assert mean.participants == 3
     assert np.all(mean.half_width >= 0.0)
 
@@ -231,14 +242,16 @@ def test_a_difference_is_that_of_the_same_participants_from_their_own_manual() -
     np.testing.assert_allclose(mean.half_width, 12.706 * 0.1, rtol=1e-4)
 
 
-def test_differences_are_drawn_below_the_trajectories(material: StudyMaterial) -> None:
-    with styled():
-        exhibit = trajectories.draw(material)
+def test_differences_are_drawn_below_the_trajectories(
+    exhibits: list[Exhibit],
+) -> None:
+    (exhibit,) = (each for each in exhibits if each.name == "trajectories")
     assert len(panels(exhibit)) == 12
     labels = [axes.get_ylabel() for axes in panels(exhibit) if axes.get_ylabel()]
     assert labels == ["Lateral position [m]", "Minus manual [m]"] * 2
 
 
+@pytest.mark.slow
 def test_without_manual_there_is_no_difference_to_draw(material: StudyMaterial) -> None:
     changes = material.lane_changes.query("condition != 'manual'")
     with styled():
@@ -311,6 +324,7 @@ def test_without_triggers_detection_is_not_drawn(material: StudyMaterial) -> Non
     assert detection.draw(without).missing
 
 
+@pytest.mark.slow
 def test_the_participant_shown_is_the_first_with_most_conditions(
     material: StudyMaterial,
 ) -> None:

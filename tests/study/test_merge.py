@@ -55,7 +55,14 @@ def whole(tmp_path_factory: pytest.TempPathFactory) -> dict[str, bytes]:
     return contents(folder)
 
 
-@pytest.mark.parametrize("total", [2, 3, 8])
+@pytest.mark.parametrize(
+    "total",
+    [
+        2,
+        pytest.param(3, marks=pytest.mark.slow),
+        pytest.param(8, marks=pytest.mark.slow),
+    ],
+)
 def test_shards_of_one_folder_make_the_same_study(
     tmp_path: Path, whole: dict[str, bytes], total: int
 ) -> None:
@@ -74,6 +81,7 @@ def test_a_shard_goes_on_where_it_was(tmp_path: Path) -> None:
     assert (outcome.num_trials, outcome.num_resumed) == (3, 2)
 
 
+@pytest.mark.slow
 def test_shards_with_a_folder_each_are_put_together(
     tmp_path: Path, whole: dict[str, bytes]
 ) -> None:
@@ -114,6 +122,7 @@ def test_missing_trials_are_named_and_nothing_is_written(tmp_path: Path) -> None
     assert not (tmp_path / "out").exists()
 
 
+@pytest.mark.slow
 def test_a_repeated_shard_of_equal_bytes_is_told(
     tmp_path: Path, whole: dict[str, bytes]
 ) -> None:
@@ -137,7 +146,7 @@ def other_world(setup: TrialSetup) -> TrialRecord:
     return made._replace(columns=columns)
 
 
-@pytest.mark.parametrize("records", [True, False])
+@pytest.mark.parametrize("records", [True, pytest.param(False, marks=pytest.mark.slow)])
 def test_a_repeated_shard_of_other_bytes_is_refused(
     tmp_path: Path, records: bool
 ) -> None:
@@ -177,6 +186,7 @@ def test_several_folders_need_a_place(tmp_path: Path) -> None:
         merged()
 
 
+@pytest.mark.slow
 def test_failed_trials_are_rows_and_make_way_for_done_ones(
     tmp_path: Path, whole: dict[str, bytes]
 ) -> None:
@@ -194,6 +204,7 @@ def test_failed_trials_are_rows_and_make_way_for_done_ones(
     assert contents(tmp_path / "all") == whole
 
 
+@pytest.mark.slow
 def test_a_shard_at_work_lets_others_work_but_nobody_merge(tmp_path: Path) -> None:
     run_shard(tmp_path, 2, 2)
     command = [sys.executable, "-c", HOLD, str(tmp_path)]

@@ -22,6 +22,8 @@ from tests.study.fakes import SMALL, made_up
 NO_TRIGGER = "the method pi-keeping does not trigger lane changes"
 NO_VERDICT = "the method pi-keeping has no haptic gain and gives no verdict"
 
+pytestmark = pytest.mark.slow  # a study and its report
+
 
 def silent(setup: TrialSetup) -> TrialRecord:
     """A made-up trial of a method that gives a torque and no more."""

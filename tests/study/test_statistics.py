@@ -2,7 +2,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Sequence
-from functools import cache
 
 import numpy as np
 import pandas as pd
@@ -19,14 +18,9 @@ from tests.study.made_up_study import (
     TRIAL_MEASURES,
     Columns,
     made_up_study,
+    usual_outcome,
     without,
 )
-
-
-@cache
-def usual_outcome() -> StudyTests:
-    """What is found in the study that most tests look at."""
-    return study_tests(*made_up_study())
 
 
 def only(
@@ -275,7 +269,9 @@ def test_study_without_lane_changes_still_has_its_trials_tested() -> None:
         ("manual", "strong-rapid", "weak-normal"),
     ],
 )
-@pytest.mark.parametrize("num_participants", [1, 2, 3])
+@pytest.mark.parametrize(
+    "num_participants", [1, 2, pytest.param(3, marks=pytest.mark.slow)]
+)
 def test_small_studies_work_with_what_they_have(
     conditions: tuple[str, ...], num_participants: int
 ) -> None:

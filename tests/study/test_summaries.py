@@ -8,7 +8,7 @@ from scipy import stats
 
 from costeer.study.outcome import StudyTests, SummaryRow
 from costeer.study.statistics import study_tests
-from tests.study.made_up_study import made_up_study
+from tests.study.made_up_study import made_up_study, usual_outcome
 
 
 def summary(found: StudyTests, measure: str, analysis: str, level: str) -> SummaryRow:
@@ -22,8 +22,8 @@ def summary(found: StudyTests, measure: str, analysis: str, level: str) -> Summa
 
 
 def test_interval_is_students_interval_of_the_mean() -> None:
-    trials, changes = made_up_study()
-    row = summary(study_tests(trials, changes), "overshoot", "published", "weak-rapid")
+    _, changes = made_up_study()
+    row = summary(usual_outcome(), "overshoot", "published", "weak-rapid")
     values = changes["overshoot"][changes["condition"] == "weak-rapid"].astype(float)
     expected = stats.ttest_1samp(values, 0.0).confidence_interval(0.95)
     assert row.n == 96
@@ -32,8 +32,8 @@ def test_interval_is_students_interval_of_the_mean() -> None:
 
 
 def test_participants_mean_takes_all_values_of_a_strength() -> None:
-    trials, changes = made_up_study()
-    row = summary(study_tests(trials, changes), "sdlp", "within", "strong")
+    trials, _ = made_up_study()
+    row = summary(usual_outcome(), "sdlp", "within", "strong")
     strong = np.char.startswith(trials["condition"].astype(str), "strong")
     means = trials["sdlp"][strong].astype(float).reshape(12, 3).mean(axis=1)
     assert (row.n, row.mean, row.sd) == pytest.approx(

@@ -166,6 +166,7 @@ def test_one_driver_gives_no_verdict() -> None:
     assert found.judged[0].differences["pr_auc"].verdict == "unknown"
 
 
+@pytest.mark.slow
 def test_the_same_seed_gives_the_same_table_as_json_without_nan() -> None:
     again = compared(PERFECT, COIN, NEAR, reference="coin")
     text = json.dumps(comparison_facts(both()), allow_nan=False)
@@ -175,6 +176,7 @@ def test_the_same_seed_gives_the_same_table_as_json_without_nan() -> None:
     assert other.judged[1].judgement.facts["interval_95"] != first
 
 
+@pytest.mark.slow
 def test_mirrored_drives_give_the_same_table() -> None:
     def straight(seed: int) -> Recording:
         return recording("a", f"drive {seed}", columns(seed, num_changes=2))

@@ -185,5 +185,6 @@ def test_a_rate_that_no_threshold_keeps_has_no_lead() -> None:
     assert at_false_rate(drivers, EvaluationParameters()) == {}
 
 
+@pytest.mark.slow
 def test_the_same_seed_gives_the_same_intervals() -> None:
     assert evaluate(WATCH, RECORDINGS) == result()

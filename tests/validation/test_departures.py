@@ -93,7 +93,9 @@ def wandering(
     return positions
 
 
-@pytest.mark.parametrize(("sdlp", "mean"), [(0.45, 0.0), (0.35, 0.2)])
+@pytest.mark.parametrize(
+    ("sdlp", "mean"), [pytest.param(0.45, 0.0, marks=pytest.mark.slow), (0.35, 0.2)]
+)
 def test_a_simulated_gaussian_lane_position_departs_as_often(
     sdlp: float, mean: float
 ) -> None:

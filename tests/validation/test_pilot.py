@@ -41,6 +41,7 @@ def test_no_pilot_run_is_ever_judged_inconsistent() -> None:
     assert columns["haptic_gain"].min() > 0.99
 
 
+@pytest.mark.slow
 def test_the_threshold_is_twice_the_percentile_of_all_gaps() -> None:
     result = pilot_threshold(1)
     every = np.concatenate(gaps_of_first())

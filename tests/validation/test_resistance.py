@@ -90,6 +90,7 @@ def test_the_real_system_fades_out_and_the_other_does_not() -> None:
         assert np.isnan(other.fading_time).all()
 
 
+@pytest.mark.slow
 def test_a_system_that_yields_is_overruled_with_less_torque_and_way() -> None:
     for duration in (4.0, 6.0, 8.0):
         real, other = (trio()[duration, system] for system in SYSTEMS)
@@ -97,6 +98,7 @@ def test_a_system_that_yields_is_overruled_with_less_torque_and_way() -> None:
         assert (real.deviation < other.deviation).all()
 
 
+@pytest.mark.slow
 def test_a_faster_change_takes_more_torque() -> None:
     peaks = [trio()[duration, "fades out"].peak_torque for duration in (4.0, 6.0)]
     assert (peaks[0] > peaks[1]).all()
@@ -171,6 +173,7 @@ def test_rows_of_what_nobody_has_are_empty() -> None:
     assert np.isnan([*row.percentiles, row.mean]).all()
 
 
+@pytest.mark.slow
 def test_progress_and_threads_change_nothing() -> None:
     told: list[int] = []
     for found in resist(PILOT_SEED, 1, jobs=1, progress=told.append):

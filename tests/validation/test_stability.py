@@ -164,7 +164,10 @@ def test_the_damping_is_far_from_the_bound() -> None:
     assert least_damped(poles(matrices))[0].min() > 0.2
 
 
-@pytest.mark.parametrize("car", CARS)
+@pytest.mark.parametrize(
+    "car",
+    [c if c == "default" else pytest.param(c, marks=pytest.mark.slow) for c in CARS],
+)
 def test_no_driver_swings_in_any_car_at_any_speed(car: str) -> None:
     for speed in SPEEDS:
         matrices = hundred(car, speed)
@@ -239,6 +242,7 @@ def test_with_the_drivers_noise_dry_friction_hardly_adds_to_the_drift() -> None:
     assert with_it < 1.1 * without
 
 
+@pytest.mark.slow
 def test_progress_counts_drivers_and_threads_change_nothing() -> None:
     told: list[int] = []
     alone = driver_stability(PILOT_SEED, 2, jobs=1, progress=told.append)

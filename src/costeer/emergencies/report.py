@@ -20,7 +20,6 @@ from costeer.pages.style import styled
 from costeer.pages.tables import Table, versions_table
 
 REPORT_FILE = "report.html"
-SUMMARY_TITLE = "Collisions and behaviour"
 
 _CAUTION = (
     "These are virtual drivers.",

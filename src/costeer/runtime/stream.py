@@ -230,15 +230,6 @@ class RecordStream:
         moments = zip(CLOCK_FIELDS, (self._started, now), strict=True)
         return {name: each.isoformat(timespec="seconds") for name, each in moments}
 
-    def write_trace(self, rows: NDArray[np.float64]) -> None:
-        """Append rows of the wheel at the plant's rate and flush them.
-
-        Raises:
-            OSError: If they cannot be written; they wait for the next `flush`.
-        """
-        self.add_trace(rows)
-        self.flush()
-
     def add_trace(self, rows: NDArray[np.float64]) -> None:
         """Append rows of the wheel, which wait to be flushed."""
         # Not `pa.array`, which imports pandas: seconds, in the middle of a drive.

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
-from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -32,7 +30,7 @@ def event_rows(session: Session) -> list[dict[str, Any]]:
     ahead: dict[tuple[str, str, str], float] = {}
     set_by, before = 0.0, None
     for event in session.store.rows("SELECT * FROM events ORDER BY number"):
-        jump = None if before is None else _jump(before, event)
+        jump = None if before is None else clock_jump(before, event)
         if before is not None and jump is not None:
             set_by += _set_by(before, event, jump["length"])
             rows.append((seconds_of(event["utc"]) - set_by, jump))
@@ -62,13 +60,7 @@ def _of_store(event: Row) -> dict[str, Any]:
     return row | {"data": data, "length": None, "trial_time": None, "record": ""}
 
 
-def clock_jumps(events: Sequence[Row]) -> Iterator[dict[str, Any]]:
-    """Where wall clock and monotonic clock disagree from one event to the next."""
-    found = (_jump(before, after) for before, after in pairwise(events))
-    return (each for each in found if each is not None)
-
-
-def _jump(before: Row, after: Row) -> dict[str, Any] | None:
+def clock_jump(before: Row, after: Row) -> dict[str, Any] | None:
     """The row of a clock that was set between two events; None if it was not."""
     wall = seconds_of(after["utc"]) - seconds_of(before["utc"])
     steady = after["monotonic"] - before["monotonic"]

@@ -6,7 +6,6 @@ from pathlib import Path
 
 from costeer.devices.head.calibration import calibration_file
 from costeer.sessions.session import Session
-from costeer.sessions.store import OF_PEOPLE
 
 ROOMS = ("records", "practice", "aborted")
 """Folders with files of participants."""
@@ -64,12 +63,3 @@ def _made_in(room: Path) -> list[Path]:
 def num_withdrawn(session: Session) -> int:
     """How many have withdrawn; who they were is not known any more."""
     return len(session.store.rows("SELECT number FROM withdrawn"))
-
-
-def num_rows_of(session: Session, participant: str) -> int:
-    """Rows that the store holds of a participant."""
-    query = "SELECT 1 FROM {} WHERE participant = ?"
-    found = (
-        session.store.rows(query.format(table), participant) for table in OF_PEOPLE
-    )
-    return sum(map(len, found))

@@ -102,6 +102,7 @@ class Late(Watching):
         return super()._hold(text, elapsed - 15.0)
 
 
+@pytest.mark.slow
 def test_a_weight_that_comes_late_is_waited_for() -> None:
     user = Late()
     assert weighed(user) == pytest.approx(PULL, rel=0.03)
@@ -116,6 +117,7 @@ class Propping(Watching):
         return share * super()._weight(text, elapsed)
 
 
+@pytest.mark.slow
 def test_a_weight_that_was_not_free_all_the_time_is_refused() -> None:
     user = Propping()
     with pytest.raises(SelfTestStopped, match="not free all the time; hang it, let go"):

@@ -150,6 +150,7 @@ def test_an_earlier_report_is_written_over_and_its_extra_figures_go(
     assert "holds no learning curves" in (out / "report.html").read_text()
 
 
+@pytest.mark.slow
 def test_one_driver_has_no_spread() -> None:
     with styled():
         assert "one driver" in draw_spread(material(num_drivers=1)).missing

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from costeer.sessions.withdrawal import num_rows_of
+from tests.sessions.made_up import rows_of
 from tests.web.page.conftest import until, wait_for
 from tests.web.sessions.conftest import OpenPage, Study
 
@@ -241,7 +241,7 @@ def test_withdrawal_asks_for_the_pseudonym_and_leaves_nothing(
     dialog.get_by_role("textbox").fill("P01")
     dialog.get_by_role("button", name="Delete for ever").click()
     console.get_by_text("1 withdrew").wait_for()
-    assert num_rows_of(study.desk.session, "P01") == 0
+    assert rows_of(study.desk.session, "P01") == []
     open_page.wrong.clear()  # the browser tells each refusal as an error
 
 

@@ -76,7 +76,7 @@ def draw(material: StudyMaterial) -> Exhibit:
     own = own_trajectories(material)
     if not own:
         return not_drawn(NAME, TITLE, "No trial of this study holds a lane change.")
-    means = {key: _mean(each) for key, each in own.items()}
+    means = {key: mean_of(each) for key, each in own.items()}
     apart = differences(own)
     durations = [name for name in DURATIONS if _has(means, name)] or [""]
     heights = [1.0, 0.8, 1.0, 0.8] if apart else [1.0, 1.0]
@@ -148,11 +148,6 @@ def own_trajectories(material: StudyMaterial) -> dict[Key, Own]:
     return own
 
 
-def mean_trajectories(material: StudyMaterial) -> dict[Key, Mean]:
-    """Return the mean trajectory of every condition and direction there is."""
-    return {key: _mean(own) for key, own in own_trajectories(material).items()}
-
-
 def differences(own: dict[Key, Own]) -> dict[Key, Mean]:
     """Mean of what each participant's trajectory has more than the own manual one."""
     found = {}
@@ -166,7 +161,7 @@ def differences(own: dict[Key, Own]) -> dict[Key, Mean]:
             if who in manual.positions
         }
         if apart:
-            found[name, direction] = _mean(each._replace(positions=apart))
+            found[name, direction] = mean_of(each._replace(positions=apart))
     return found
 
 
@@ -191,7 +186,7 @@ def _aligned(
     return np.array(found)
 
 
-def _mean(own: Own) -> Mean:
+def mean_of(own: Own) -> Mean:
     """Mean over participants of their own means."""
     positions = np.array(list(own.positions.values()))
     return Mean(
