@@ -36,6 +36,8 @@ class CommandGroup(LazyGroup):
         "drivers": "Draw, plot, validate and fit virtual drivers.",
         "parameters": "List every parameter that --set can change: value, unit, range, "
         "source.",
+        "methods": "List the methods of assistance, costeer's own and installed "
+        "plug-ins.",
         "train": "Fit the intention network on records.",
         "emergencies": "Let an obstacle appear ahead, and compare what comes of it.",
         "compare": "Compare methods of assistance on the same drivers, roads and "

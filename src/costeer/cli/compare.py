@@ -25,7 +25,8 @@ def compare(
     methods: Annotated[
         str,
         typer.Option(
-            help="Names with commas between, FILE.py or module:object among them."
+            help="Names of `costeer methods` with commas between, FILE.py or "
+            "module:object among them."
         ),
     ] = "all",
     scenarios: Annotated[
