@@ -23,6 +23,8 @@ from costeer.comparison.design import (
 from costeer.comparison.entrants import Course, Entrant
 from costeer.comparison.folder import ComparisonFolder, read_block
 from costeer.comparison.measures import COLUMNS, TrialOutcome
+from costeer.scenarios.definition import Scenario
+from costeer.scenarios.reading import scenario_of
 from costeer.study.trial_tables import cell as text_of
 
 if TYPE_CHECKING:
@@ -127,11 +129,20 @@ def cells_from(configuration: dict[str, Any]) -> tuple[Cell, ...]:
     """The cells of a comparison, by names alone: nothing of them can be driven."""
     entrants = [Entrant(name, name, True) for name in configuration["methods"]]
     courses = [
-        Course(name, name, float(each["length"]), float(each["speed"]))
+        Course(name, scenario_in(name, each), each["length"], each["speed"])
         for name, each in configuration["scenarios"].items()
     ]
     left_out = [LeftOut(*each) for each in configuration["left_out"]]
     return cells_of(entrants, courses, configuration["mistakes"], left_out)
+
+
+def scenario_in(name: str, told: dict[str, Any]) -> str | Scenario:
+    """A scenario as `compare.yaml` tells of it: by name, or itself.
+
+    Raises:
+        ValueError: If it cannot be.
+    """
+    return scenario_of(told["content"]) if "content" in told else name
 
 
 def _outcomes(
