@@ -6,6 +6,8 @@ import csv
 import math
 from pathlib import Path
 
+import numpy as np
+import pandas as pd
 import pytest
 
 import costeer
@@ -15,6 +17,8 @@ from costeer.comparison.report import remake_report
 from costeer.comparison.run import run_comparison
 from costeer.loop.scenario import TrialSetup
 from costeer.records.columns import TrialRecord
+from costeer.study.disputes import in_lane_change
+from costeer.study.inconsistencies import find_inconsistencies
 from costeer.study.measures import lane_change_rows, trial_row
 from tests.comparison.fakes import SMALL, made_up
 from tests.study.fakes import contents
@@ -83,12 +87,26 @@ def test_a_collision_is_an_event_of_safety() -> None:
     assert found["num_safety_events"] == 1.0 + found["num_lane_departures"]
 
 
+def test_inconsistencies_are_placed_as_the_study_places_them() -> None:
+    record = made_up(setup("ibhs"))
+    begun = find_inconsistencies(record.columns)
+    changes = pd.DataFrame(lane_change_rows(record))
+    assert not isinstance(begun, str)
+    assert begun
+    wanted = [in_lane_change(each.start_time, changes) for each in begun]
+    found = outcome_of(1, record).disputes
+    assert np.array(found) == pytest.approx(np.array(wanted), nan_ok=True)
+    # The shadow of manual driving disputes nothing.
+    assert outcome_of(1, made_up(setup("manual"))).disputes is None
+
+
 def test_the_page_says_what_one_must_know(page: str) -> None:
     for words in (
         "Thresholds and gains of all methods were set before, on manual and pilot",
         "calibrated on manual driving and for none of the methods",
         "Where the paper&#39;s method loses",
         "2 methods, 2 scenarios, 12 virtual drivers",
+        "When inconsistencies come",
         "expressway and cut-in",
         "1 trial failed",
         "ValueError: the car&#39;s position is no number",

@@ -22,7 +22,7 @@ from costeer.base.files import read_whole, write_text
 from costeer.base.nested import read_mapping
 from costeer.comparison.configuration import differences
 from costeer.comparison.design import Block, Cell
-from costeer.comparison.measures import COLUMNS, TrialOutcome
+from costeer.comparison.measures import COLUMNS, Moment, TrialOutcome
 from costeer.scale.shard import WHOLE, Shard
 from costeer.study.folder import configuration_hash
 from costeer.study.locks import held_folder
@@ -164,10 +164,7 @@ def write_block(
         "comparison": folder.hash,
         "cell": cell_name(block.cell),
         "columns": list(COLUMNS),
-        "trials": [
-            each._asdict() | {"values": [_written(value) for value in each.values]}
-            for each in outcomes
-        ],
+        "trials": [_plain(each) for each in outcomes],
     }
     told = {"sha256": _digest(content), "results": content}
     text = json.dumps(told, allow_nan=False, separators=(",", ":"))
@@ -197,6 +194,7 @@ def read_block(folder: ComparisonFolder, block: Block) -> list[TrialOutcome] | N
                 failure=str(each["failure"]),
                 torque_faults=int(each["torque_faults"]),
                 values=tuple(_read(value) for value in each["values"]),
+                disputes=_moments(each["disputes"]),
             )
             for each in content["trials"]
         ]
@@ -208,6 +206,22 @@ def read_block(folder: ComparisonFolder, block: Block) -> list[TrialOutcome] | N
     who = tuple(each.participant for each in outcomes)
     whole = all(len(each.values) == len(COLUMNS) for each in outcomes)
     return outcomes if said == wanted and who == block.participants and whole else None
+
+
+def _plain(outcome: TrialOutcome) -> dict[str, Any]:  # Any: of JSON
+    moments = outcome.disputes
+    return outcome._asdict() | {
+        "values": list(map(_written, outcome.values)),
+        "disputes": None
+        if moments is None
+        else [list(map(_written, each)) for each in moments],
+    }
+
+
+def _moments(told: Any) -> tuple[Moment, ...] | None:  # Any: of JSON
+    if told is None:
+        return None
+    return tuple(Moment(*(_read(value) for value in each)) for each in told)
 
 
 def _written(value: float) -> float | str | None:
