@@ -13,7 +13,6 @@ import pytest
 import costeer
 from costeer.cli import main
 from costeer.comparison.measures import COLUMNS, outcome_of
-from costeer.comparison.report import remake_report
 from costeer.comparison.run import run_comparison
 from costeer.loop.scenario import TrialSetup
 from costeer.records.columns import TrialRecord
@@ -147,11 +146,16 @@ def test_the_report_is_made_again_from_the_results_alone(
     assert contents(reported) == before
 
 
-def test_an_unfinished_comparison_has_a_report_that_says_so(tmp_path: Path) -> None:
+def test_an_unfinished_comparison_has_a_report_that_says_so(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     run_comparison(tmp_path, SMALL, jobs=1, report=None, simulate=made_up)
     for file in (tmp_path / "results").glob("*-00011.json"):
         file.unlink()
-    page = remake_report(tmp_path).read_text("utf-8")
+    assert main(["report", str(tmp_path)]) == 0
+    told = capsys.readouterr().err.splitlines()[-1]
+    assert told.startswith("costeer: the report is without 8 trials not driven yet;")
+    page = (tmp_path / "report.html").read_text("utf-8")
     assert "8 trials are not driven yet" in page
     with (tmp_path / "trials.csv").open(encoding="utf-8") as stream:
         assert len(stream.readlines()) == 1 + 4 * 10
@@ -213,3 +217,16 @@ def test_two_methods_on_two_roads_with_two_drivers(
     assert [bool(row["detection_lead_time"]) for row in rows[:4]] == [False] * 2 + [
         True
     ] * 2
+
+
+def test_who_is_refused_reads_the_refusal_alone(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "mine.txt").write_text("not a comparison")
+    # That manual driving makes no mistake of a trigger is a note of its own.
+    words = ["compare", "--out", str(tmp_path), "--methods", "manual,ibhs"]
+    words += ["--mistakes", "late-trigger", "--participants", "1", "--length", "500"]
+    assert main(words) == 2
+    told = capsys.readouterr().err.splitlines()
+    assert len(told) == 1
+    assert "is not empty and holds no comparison" in told[0]

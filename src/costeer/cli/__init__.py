@@ -17,6 +17,7 @@ from typing import Annotated
 import typer
 
 from costeer.cli.compiling import announce
+from costeer.cli.console import release_notes
 from costeer.cli.encoding import write_any_text
 from costeer.cli.errors import BAD_INPUT, exit_code_of
 from costeer.cli.group import LazyGroup
@@ -120,11 +121,13 @@ def main(arguments: list[str] | None = None) -> int:
             file=sys.stderr,
         )
         return BAD_INPUT
-    return exit_code_of(
+    code = exit_code_of(
         lambda: command.main(
             words or ["--help"], prog_name="costeer", standalone_mode=False
         )
     )
+    release_notes(told=code != BAD_INPUT)
+    return code
 
 
 def _open_closed_streams() -> None:

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from costeer.cli.console import note, progress
+from costeer.cli.compiling import compiled_for
+from costeer.cli.console import hold_notes, note, progress
 from costeer.cli.scaled import (
     FAILED,
     Cluster,
@@ -22,6 +23,8 @@ from costeer.cli.units import parse_length
 if TYPE_CHECKING:
     from costeer.comparison.design import ComparisonSettings
     from costeer.comparison.run import BlockDone, ComparisonOutcome, Placement
+    from costeer.loop.scenario import TrialSetup
+    from costeer.records.columns import TrialRecord
     from costeer.scale.shard import Shard
 
 
@@ -134,9 +137,11 @@ def _run(
     """
     from costeer.comparison.design import num_trials
     from costeer.comparison.run import full_report, prepared, run_comparison
+    from costeer.loop.trial import simulate_trial
     from costeer.scale.shard import part
     from costeer.study.run import StudyInterrupted
 
+    hold_notes()
     _, plan = prepared(settings)
     for each in plan.left_out:
         note(f"costeer: {each.method} with {each.mistake} is left out: {each.reason}")
@@ -157,11 +162,31 @@ def _run(
                 placement=placement,
                 report=partial(full_report, tell=_tell),
                 progress=shown,
+                simulate=simulate_trial
+                if placement.cluster
+                else partial(_told_of, [each.name for each in plan.entrants]),
             )
         except StudyInterrupted as stop:
-            note(f"costeer: {stop}")
+            note(f"costeer: {stop}", at_once=True)
             raise
     return outcome, time.monotonic() - begun
+
+
+def _told_of(waiting: list[str], setup: TrialSetup) -> TrialRecord:
+    """Simulate a trial; should that need machine code, its method can be named.
+
+    Args:
+        waiting: Methods that nobody has driven yet; the one of the trial is removed.
+        setup: The trial.
+    """
+    from costeer.loop.trial import simulate_trial
+    from costeer.methods.registry import method_named
+
+    name = method_named(setup.method).name
+    if name in waiting:
+        waiting.remove(name)
+    compiled_for(f"method {name}", len(waiting))
+    return simulate_trial(setup)
 
 
 def _print_outcome(outcome: ComparisonOutcome, seconds: float, shard: Shard) -> None:

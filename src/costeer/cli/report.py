@@ -75,7 +75,7 @@ def _remake_comparison(folder: Path, beside: Path | None) -> None:
     """
     from costeer.comparison.folder import read_comparison
     from costeer.comparison.report import NUM_STEPS, remake_report
-    from costeer.comparison.results import gathered
+    from costeer.comparison.results import num_missing
     from costeer.pages.numerals import plural
 
     if beside is not None:
@@ -85,11 +85,11 @@ def _remake_comparison(folder: Path, beside: Path | None) -> None:
         )
     with progress("report", NUM_STEPS) as advance:
         page = remake_report(folder, lambda _: advance(1))
-    missing = gathered(read_comparison(folder)).num_missing
+    missing = num_missing(read_comparison(folder))
     if missing:
         note(
-            f"costeer: {plural(missing, 'trial')} not driven yet; the report is without "
-            "them, and the first lines of compare.yaml hold the command that goes on"
+            f"costeer: the report is without {plural(missing, 'trial')} not driven "
+            "yet; the first lines of compare.yaml hold the command that goes on"
         )
     typer.echo(page)
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from costeer.cli import plug_ins
-from costeer.cli.console import note
+from costeer.cli.console import hold_notes, note, release_notes
 from costeer.cli.scaled import (
     Cluster,
     ShardOption,
@@ -83,6 +83,7 @@ def study(
     from costeer.study.configuration import StudySettings, check_settings
     from costeer.study.run import Scale
 
+    hold_notes()
     course = plug_ins.chosen_scenario(scenario, length, speed)
     settings = check_settings(
         StudySettings(
@@ -143,6 +144,7 @@ def _run(
         def shown(done: TrialDone) -> None:
             nonlocal ended
             ended = time.monotonic()
+            release_notes()
             display.trial(done)
 
         try:
@@ -155,7 +157,7 @@ def _run(
                 scale=scale,
             )
         except StudyInterrupted as stop:
-            note(f"costeer: {stop}")
+            note(f"costeer: {stop}", at_once=True)
             raise
     return outcome, ended - begun
 

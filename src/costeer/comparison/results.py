@@ -145,6 +145,17 @@ def cells_from(configuration: dict[str, Any]) -> tuple[Cell, ...]:
     return cells_of(entrants, courses, configuration["mistakes"], left_out)
 
 
+def num_missing(folder: ComparisonFolder) -> int:
+    """How many trials have not been driven yet [-].
+
+    Raises:
+        OSError: If a file cannot be read.
+    """
+    participants = int(folder.configuration["participants"])
+    blocks = blocks_of(cells_from(folder.configuration), participants)
+    return sum(len(b.participants) for b in blocks if read_block(folder, b) is None)
+
+
 def scenario_in(name: str, told: dict[str, Any]) -> str | Scenario:
     """A scenario as `compare.yaml` tells of it: by name, or itself.
 
