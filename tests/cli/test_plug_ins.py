@@ -182,6 +182,6 @@ def test_parameters_are_listed_with_unit_range_and_source(
     monkeypatch.setenv("COLUMNS", "200")
     assert main(["parameters", "--method", str(FILE), "offset", "--json"]) == 0
     shown = capsys.readouterr().out
-    assert '"name": "offset"' in shown
+    assert '"name": "controller.offset"' in shown
     assert '"unit": "N·m/m"' in shown
     assert main(["parameters", "guidnace"]) == 2

@@ -35,6 +35,7 @@ def results(
         scenarios=tuple(roads),
         mistakes=tuple(dict.fromkeys(key[1] for key in values)),
         values=values,
+        disputes={},
         failures=tuple(failures),
         faults={},
         left_out=(),

@@ -22,7 +22,7 @@ def test_usual_settings_are_all_methods_on_six_roads() -> None:
     assert settings.methods == tuple(METHODS)
     assert len(set(SCENARIOS)) == 6
     plan = planned(settings)
-    assert num_trials(plan) == len(METHODS) * 6 * 50
+    assert num_trials(plan.blocks) == len(METHODS) * 6 * 50
     assert [each.length for each in plan.courses] == [
         8000,
         8000,
@@ -36,7 +36,7 @@ def test_usual_settings_are_all_methods_on_six_roads() -> None:
 def test_every_trial_stands_in_one_block() -> None:
     plan = planned(checked(SMALL))
     found = [(b.cell.number, who) for b in plan.blocks for who in b.participants]
-    assert len(set(found)) == len(found) == num_trials(plan) == NUM_TRIALS
+    assert len(set(found)) == len(found) == num_trials(plan.blocks) == NUM_TRIALS
     # First drivers first: a comparison that is stopped can be compared.
     assert {b.participants[0] for b in plan.blocks[: len(plan.cells)]} == {1}
 

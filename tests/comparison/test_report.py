@@ -7,15 +7,18 @@ import math
 import shutil
 from pathlib import Path
 
+import numpy as np
+import pandas as pd
 import pytest
 
 import costeer
 from costeer.cli import main
 from costeer.comparison.measures import COLUMNS, outcome_of
-from costeer.comparison.report import remake_report
 from costeer.comparison.run import run_comparison
 from costeer.loop.scenario import TrialSetup
 from costeer.records.columns import TrialRecord
+from costeer.study.disputes import in_lane_change
+from costeer.study.inconsistencies import find_inconsistencies
 from costeer.study.measures import lane_change_rows, trial_row
 from tests.comparison.fakes import SMALL, made_up
 from tests.study.fakes import contents
@@ -84,12 +87,26 @@ def test_a_collision_is_an_event_of_safety() -> None:
     assert found["num_safety_events"] == 1.0 + found["num_lane_departures"]
 
 
+def test_inconsistencies_are_placed_as_the_study_places_them() -> None:
+    record = made_up(setup("ibhs"))
+    begun = find_inconsistencies(record.columns)
+    changes = pd.DataFrame(lane_change_rows(record))
+    assert not isinstance(begun, str)
+    assert begun
+    wanted = [in_lane_change(each.start_time, changes) for each in begun]
+    found = outcome_of(1, record).disputes
+    assert np.array(found) == pytest.approx(np.array(wanted), nan_ok=True)
+    # The shadow of manual driving disputes nothing.
+    assert outcome_of(1, made_up(setup("manual"))).disputes is None
+
+
 def test_the_page_says_what_one_must_know(page: str) -> None:
     for words in (
         "Thresholds and gains of all methods were set before, on manual and pilot",
         "calibrated on manual driving and for none of the methods",
         "Where the paper&#39;s method loses",
         "2 methods, 2 scenarios, 12 virtual drivers",
+        "When inconsistencies come",
         "expressway and cut-in",
         "1 trial failed",
         "ValueError: the car&#39;s position is no number",
@@ -132,12 +149,15 @@ def test_the_report_is_made_again_from_the_results_alone(
 
 @pytest.mark.usefixtures("undrawn")
 def test_an_unfinished_comparison_has_a_report_that_says_so(
-    reported: Path, tmp_path: Path
+    reported: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     folder = Path(shutil.copytree(reported, tmp_path / "part"))
     for file in (folder / "results").glob("*-00011.json"):
         file.unlink()
-    page = remake_report(folder).read_text("utf-8")
+    assert main(["report", str(folder)]) == 0
+    told = capsys.readouterr().err.splitlines()[-1]
+    assert told.startswith("costeer: the report is without 8 trials not driven yet;")
+    page = (folder / "report.html").read_text("utf-8")
     assert "8 trials are not driven yet" in page
     with (folder / "trials.csv").open(encoding="utf-8") as stream:
         assert len(stream.readlines()) == 1 + 4 * 10
@@ -199,3 +219,16 @@ def test_two_methods_on_two_roads_with_two_drivers(
     assert [bool(row["detection_lead_time"]) for row in rows[:4]] == [False] * 2 + [
         True
     ] * 2
+
+
+def test_who_is_refused_reads_the_refusal_alone(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "mine.txt").write_text("not a comparison")
+    # That manual driving makes no mistake of a trigger is a note of its own.
+    words = ["compare", "--out", str(tmp_path), "--methods", "manual,ibhs"]
+    words += ["--mistakes", "late-trigger", "--participants", "1", "--length", "500"]
+    assert main(words) == 2
+    told = capsys.readouterr().err.splitlines()
+    assert len(told) == 1
+    assert "is not empty and holds no comparison" in told[0]

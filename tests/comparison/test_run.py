@@ -17,7 +17,7 @@ from typing import Any
 import pytest
 
 from costeer.comparison.design import BLOCK, ComparisonSettings
-from costeer.comparison.run import comparison_command, run_comparison
+from costeer.comparison.run import Placement, comparison_command, run_comparison
 from costeer.comparison.worst import HASH_FIELD
 from costeer.loop.scenario import TrialSetup
 from costeer.records.columns import TrialRecord
@@ -287,7 +287,9 @@ def test_the_command_is_the_comparison() -> None:
 def test_workers_elsewhere_write_the_same_bytes(tmp_path: Path) -> None:
     short = SMALL._replace(participants=3, length=400.0, mistakes=("none", "latency"))
     run_comparison(tmp_path / "threads", short, jobs=2, report=None)
-    run_comparison(tmp_path / "workers", short, cluster="local:2", report=None)
+    run_comparison(
+        tmp_path / "workers", short, placement=Placement("local:2"), report=None
+    )
     assert contents(tmp_path / "workers") == contents(tmp_path / "threads")
 
 

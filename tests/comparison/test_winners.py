@@ -6,11 +6,12 @@ import math
 
 import numpy as np
 import pytest
+from matplotlib.lines import Line2D
 
 from costeer.comparison.criteria import AIMS, CRITERIA, SPEAKING
 from costeer.comparison.design import Course, Entrant, cells_of
 from costeer.comparison.effects import effect_rows, mean_rows, paired_effect
-from costeer.comparison.figures import over_scenarios
+from costeer.comparison.figures import over_scenarios, panel_grid
 from costeer.comparison.measures import COLUMNS
 from costeer.comparison.results import Failure
 from costeer.comparison.tables import winner_text
@@ -23,6 +24,7 @@ from costeer.comparison.winners import (
     winner_rows,
 )
 from costeer.comparison.worst import worst_drives
+from costeer.pages.style import Margins, styled
 from tests.comparison.made_up import Given, results
 
 NAN = math.nan
@@ -83,7 +85,8 @@ def test_less_sdlp_wins_and_more_time_to_the_line_wins() -> None:
     assert winner(given).best == "a"
     row = winner(given, "line_crossing_time_minimum")
     assert (row.verdict, row.best, row.tied) == (WINNER, "c", "")
-    assert winner_text(row) == "c"
+    # All drivers differ by 0.05: the interval has no width.
+    assert winner_text(row) == "c wins\n+0.05\n[0.05,\u00a00.05]\nto b"
 
 
 def test_no_difference_is_a_tie() -> None:
@@ -209,3 +212,41 @@ def test_each_aim_has_a_measure_that_speaks_for_it() -> None:
     assert len(AIMS) == 6
     assert len({each.name for each in CRITERIA}) == len(CRITERIA)
     assert all(each.better for each in SPEAKING)
+
+
+def test_a_winner_s_lead_is_its_paired_difference_to_the_next_best() -> None:
+    # a - b is -0.05 for every driver and the name of the better one comes last.
+    noise = [0.01, -0.01, 0.02, -0.02, 0.01, -0.01, 0.02, -0.02]
+    next_best = [x + 0.05 + e for x, e in zip(EIGHT, noise, strict=True)]
+    row = winner({"c": plus(EIGHT, 0.3), "b": next_best, "a": EIGHT})
+    assert (row.best, row.second) == ("a", "b")
+    assert row.difference == pytest.approx(-0.05)
+    # Student's t with 7 degrees of freedom, 2.3646, times the standard error.
+    half = 2.3646 * np.std(noise, ddof=1) / math.sqrt(8.0)
+    assert (row.low, row.high) == pytest.approx((-0.05 - half, -0.05 + half), rel=1e-4)
+    assert winner_text(row).splitlines()[0] == "a wins"
+
+
+def test_what_never_happens_is_no_evidence() -> None:
+    nothing = [0.0] * 8
+    row = winner({"a": nothing, "b": nothing}, "num_lane_departures")
+    assert (row.verdict, row.note) == (TIE, "no events")
+    assert winner_text(row) == "tie (no events)"
+    once = [1.0, *nothing[1:]]
+    row = winner({"a": nothing, "b": nothing, "c": once}, "num_lane_departures")
+    assert (row.verdict, row.note) == (TIE, "")
+    assert winner_text(row) == "tie of all 3"
+    # A measure that is no count says nothing of events where it is zero.
+    assert winner({"a": nothing, "b": nothing}, "overshoot").note == ""
+
+
+@pytest.mark.parametrize("number", range(1, 8))
+def test_no_place_of_a_grid_is_empty(number: int) -> None:
+    handle = Line2D([], [], label="a")
+    with styled():
+        grid = panel_grid(number, 30.0, Margins(), [handle])
+    assert len(grid.panels) == number
+    every = grid.figure.axes
+    empty = [axes for axes in every if axes not in grid.panels]
+    assert all(not axes.axison for axes in empty)
+    assert bool(empty) == any(axes.get_legend() is not None for axes in empty)

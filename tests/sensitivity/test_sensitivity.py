@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 import csv
+import json
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from costeer.loop.scenario import PILOT_SEED, loop_parameters
+from costeer.scale.cluster import workers
+from costeer.scale.shard import Shard
 from costeer.sensitivity.factors import AIMS, FACTORS
+from costeer.sensitivity.merge import merge_sensitivity
 from costeer.sensitivity.report import binned, write_report
 from costeer.sensitivity.run import (
     Outcome,
@@ -21,6 +25,7 @@ from costeer.sensitivity.run import (
     points,
     setup_of,
 )
+from tests.study.fakes import contents
 
 pytest.importorskip("SALib")
 
@@ -160,3 +165,51 @@ def test_settings_out_of_range_are_refused(
 ) -> None:
     with pytest.raises(ValueError, match=message):
         check_settings(SMALL._replace(**changes))
+
+
+def sum_of_factors(point: Point) -> Outcome:
+    """An outcome that follows from the sample alone."""
+    return {aim.name: sum(unit(point)) + n for n, aim in enumerate(AIMS)}
+
+
+def run_shard(out: Path, number: int, total: int) -> list[Outcome]:
+    with workers(1) as pool:
+        return drive_all(out, SMALL, pool, ignore, sum_of_factors, Shard(number, total))
+
+
+@pytest.mark.parametrize("shared", [True, False])
+def test_shards_are_the_whole_analysis(tmp_path: Path, shared: bool) -> None:
+    whole = run_shard(tmp_path / "whole", 1, 1)
+    names = ["all", "all", "all"] if shared else ["1", "2", "3"]
+    sizes = [
+        len(run_shard(tmp_path / name, number, 3))
+        for number, name in enumerate(names, 1)
+    ]
+    # 8 · (9 + 2) samples.
+    assert sum(sizes) == len(whole) == 88
+    folders = [tmp_path / name for name in dict.fromkeys(names)]
+    done = merge_sensitivity(folders, tmp_path / "all")
+    assert (done.outcomes, done.settings, done.repeated) == (whole, SMALL, ())
+    assert contents(tmp_path / "all") == contents(tmp_path / "whole")
+
+
+def test_samples_that_are_missing_or_differ_are_named(tmp_path: Path) -> None:
+    run_shard(tmp_path / "1", 1, 2)
+    with pytest.raises(ValueError, match="44 of 88 samples are missing: sample 2, "):
+        merge_sensitivity([tmp_path / "1"])
+    run_shard(tmp_path / "whole", 1, 1)
+    file = tmp_path / "1" / "results" / "000000.json"
+    told = json.loads(file.read_text())
+    told["values"][AIMS[0].name] += 1.0
+    file.write_text(json.dumps(told))
+    with pytest.raises(ValueError, match="sample 1 has different results in"):
+        merge_sensitivity([tmp_path / "1", tmp_path / "whole"], tmp_path / "all")
+    assert not (tmp_path / "all").exists()
+
+
+def test_a_folder_that_is_no_analysis_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(ValueError, match="is no sensitivity analysis"):
+        merge_sensitivity([tmp_path])
+    run_shard(tmp_path / "1", 1, 2)
+    with pytest.raises(ValueError, match="2 folders need one to be put together in"):
+        merge_sensitivity([tmp_path / "1", tmp_path / "1"])

@@ -9,9 +9,10 @@ from typing import TYPE_CHECKING, Any
 from costeer.api.recordings import File, by_name
 from costeer.comparison.design import SCENARIOS, ComparisonSettings
 from costeer.comparison.mistakes import NONE
-from costeer.comparison.run import full_report, run_comparison
+from costeer.comparison.run import Placement, full_report, run_comparison
 from costeer.methods.interface import Method
 from costeer.methods.registry import AnyMethod
+from costeer.scale.shard import WHOLE, parse_shard
 from costeer.scenarios.definition import Scenario
 from costeer.scenarios.mistakes import MISTAKES
 
@@ -32,6 +33,7 @@ def compare(
     length: float | None = None,
     jobs: int | None = None,
     cluster: str = "",
+    shard: str = "",
     keep_records: bool = False,
     report: bool = True,
 ) -> ComparisonOutcome:
@@ -50,6 +52,8 @@ def compare(
         intention: "scripted" (the driver's own plan is known), "network" or "off".
         length: Of every course; that of each scenario if None [m].
         cluster: Whose workers drive, as "local:4"; none for threads.
+        shard: Part of the work, "I/N"; `costeer.comparison.merge.merge_comparison`
+            puts the parts together and makes the report.
         jobs: Blocks of drivers at the same time; as many as processors if None. The
             results do not depend on it.
         keep_records: Whether the record of every trial is kept.
@@ -85,8 +89,13 @@ def compare(
         keep_records=keep_records,
     )
     made = full_report if report else None
+    part = parse_shard(shard, os.environ) if shard else WHOLE
     return run_comparison(
-        os.fspath(out), settings, jobs=jobs, cluster=cluster, report=made
+        os.fspath(out),
+        settings,
+        jobs=jobs,
+        placement=Placement(cluster, part),
+        report=made,
     )
 
 

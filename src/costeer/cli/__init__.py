@@ -17,6 +17,7 @@ from typing import Annotated
 import typer
 
 from costeer.cli.compiling import announce
+from costeer.cli.console import release_notes
 from costeer.cli.encoding import write_any_text
 from costeer.cli.errors import BAD_INPUT, exit_code_of
 from costeer.cli.group import LazyGroup
@@ -36,6 +37,8 @@ class CommandGroup(LazyGroup):
         "drivers": "Draw, plot, validate and fit virtual drivers.",
         "parameters": "List every parameter that --set can change: value, unit, range, "
         "source.",
+        "methods": "List the methods of assistance, costeer's own and installed "
+        "plug-ins.",
         "train": "Fit the intention network on records.",
         "emergencies": "Let an obstacle appear ahead, and compare what comes of it.",
         "compare": "Compare methods of assistance on the same drivers, roads and "
@@ -118,11 +121,13 @@ def main(arguments: list[str] | None = None) -> int:
             file=sys.stderr,
         )
         return BAD_INPUT
-    return exit_code_of(
+    code = exit_code_of(
         lambda: command.main(
             words or ["--help"], prog_name="costeer", standalone_mode=False
         )
     )
+    release_notes(told=code != BAD_INPUT)
+    return code
 
 
 def _open_closed_streams() -> None:

@@ -9,13 +9,23 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from costeer.cli.console import note, progress
-from costeer.cli.scaled import FAILED, Cluster
+from costeer.cli.compiling import compiled_for
+from costeer.cli.console import hold_notes, note, progress
+from costeer.cli.scaled import (
+    FAILED,
+    Cluster,
+    ShardOption,
+    chosen_shard,
+    tell_merge,
+)
 from costeer.cli.units import parse_length
 
 if TYPE_CHECKING:
     from costeer.comparison.design import ComparisonSettings
-    from costeer.comparison.run import BlockDone, ComparisonOutcome
+    from costeer.comparison.run import BlockDone, ComparisonOutcome, Placement
+    from costeer.loop.scenario import TrialSetup
+    from costeer.records.columns import TrialRecord
+    from costeer.scale.shard import Shard
 
 
 def compare(
@@ -25,7 +35,8 @@ def compare(
     methods: Annotated[
         str,
         typer.Option(
-            help="Names with commas between, FILE.py or module:object among them."
+            help="Names of `costeer methods` with commas between, FILE.py or "
+            "module:object among them."
         ),
     ] = "all",
     scenarios: Annotated[
@@ -61,6 +72,7 @@ def compare(
         typer.Option(help="Blocks of drivers at a time; as many as processors."),
     ] = None,
     cluster: Cluster = "",
+    shard: ShardOption = "",
     keep_records: Annotated[
         bool, typer.Option("--keep-records", help="Keep the record of every trial.")
     ] = False,
@@ -70,6 +82,7 @@ def compare(
     Every method meets every driver, scenario and mistake: the differences are paired.
     Writes a report with winners and ties, effects, trade-offs and worst cases, and a
     row for each trial. Stop it with Ctrl-C or kill it: the same command goes on.
+    Nothing depends on --jobs, --cluster or --shard.
 
     Example:
         costeer compare --out out/compare
@@ -77,6 +90,7 @@ def compare(
         costeer compare --out out/mine --methods manual,ibhs,mine.py --length 3km
     """
     from costeer.comparison.design import SCENARIOS, ComparisonSettings
+    from costeer.comparison.run import Placement
     from costeer.scenarios.mistakes import MISTAKES
 
     settings = ComparisonSettings(
@@ -92,7 +106,9 @@ def compare(
         length=length,
         keep_records=keep_records,
     )
-    _print_outcome(*_run(out, settings, jobs, cluster))
+    part = chosen_shard(shard)
+    outcome, seconds = _run(out, settings, jobs, Placement(cluster, part))
+    _print_outcome(outcome, seconds, part)
 
 
 def _words(text: str, option: str) -> tuple[str, ...]:
@@ -112,7 +128,7 @@ def _tell(words: str) -> None:
 
 
 def _run(
-    out: Path, settings: ComparisonSettings, jobs: int | None, cluster: str
+    out: Path, settings: ComparisonSettings, jobs: int | None, placement: Placement
 ) -> tuple[ComparisonOutcome, float]:
     """Run the comparison behind a progress display.
 
@@ -121,15 +137,19 @@ def _run(
     """
     from costeer.comparison.design import num_trials
     from costeer.comparison.run import full_report, prepared, run_comparison
+    from costeer.loop.trial import simulate_trial
+    from costeer.scale.shard import part
     from costeer.study.run import StudyInterrupted
 
+    hold_notes()
     _, plan = prepared(settings)
     for each in plan.left_out:
         note(f"costeer: {each.method} with {each.mistake} is left out: {each.reason}")
     for words in plan.notes:
         note(f"costeer: {words}")
     begun = time.monotonic()
-    with progress("trials", num_trials(plan)) as advance:
+    blocks = part(plan.blocks, placement.shard)
+    with progress("trials", num_trials(blocks)) as advance:
 
         def shown(done: BlockDone) -> None:
             advance(done.num_trials)
@@ -139,25 +159,49 @@ def _run(
                 out,
                 settings,
                 jobs=jobs,
-                cluster=cluster,
+                placement=placement,
                 report=partial(full_report, tell=_tell),
                 progress=shown,
+                simulate=simulate_trial
+                if placement.cluster
+                else partial(_told_of, [each.name for each in plan.entrants]),
             )
         except StudyInterrupted as stop:
-            note(f"costeer: {stop}")
+            note(f"costeer: {stop}", at_once=True)
             raise
     return outcome, time.monotonic() - begun
 
 
-def _print_outcome(outcome: ComparisonOutcome, seconds: float) -> None:
+def _told_of(waiting: list[str], setup: TrialSetup) -> TrialRecord:
+    """Simulate a trial; should that need machine code, its method can be named.
+
+    Args:
+        waiting: Methods that nobody has driven yet; the one of the trial is removed.
+        setup: The trial.
+    """
+    from costeer.loop.trial import simulate_trial
+    from costeer.methods.registry import method_named
+
+    name = method_named(setup.method).name
+    if name in waiting:
+        waiting.remove(name)
+    compiled_for(f"method {name}", len(waiting))
+    return simulate_trial(setup)
+
+
+def _print_outcome(outcome: ComparisonOutcome, seconds: float, shard: Shard) -> None:
     num_new = outcome.num_trials - outcome.num_resumed
     typer.echo(f"{num_new} trials simulated, {outcome.num_resumed} were there")
     if num_new and seconds > 0:
         typer.echo(f"{outcome.driver_seconds:,.0f} driver-seconds in {seconds:.1f} s")
-    typer.echo(outcome.folder / "report.html")
+    if shard.total == 1:
+        typer.echo(outcome.folder / "report.html")
+    else:
+        tell_merge(shard, outcome.folder)
     if outcome.num_failed:
+        says = "exclusions.csv says why, and the" if shard.total == 1 else "the"
         note(
-            f"costeer: {outcome.num_failed} trials failed; exclusions.csv says why, "
-            "and the same command tries them again"
+            f"costeer: {outcome.num_failed} trials failed; {says} same command tries "
+            "them again"
         )
         raise typer.Exit(FAILED)

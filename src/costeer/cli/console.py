@@ -27,7 +27,12 @@ def progress(description: str, total: int, done: int = 0) -> Iterator[Advance]:
     """
     show = _bar if sys.stderr.isatty() else _lines
     with show(description, total, done) as advance:
-        yield advance
+
+        def begun(pieces: int) -> None:
+            release_notes()
+            advance(pieces)
+
+        yield begun
 
 
 @contextmanager
@@ -78,8 +83,34 @@ def _tenths(finished: int, total: int) -> int:
     return 10 * finished // total if total > 0 else 10
 
 
-def note(message: str) -> None:
-    """Tell the user something on stderr, away from results."""
+_held: list[str] | None = None
+"""Notes that wait until work begins; None if they are told at once."""
+
+
+def hold_notes() -> None:
+    """Keep notes back until work begins: who is refused reads the refusal alone."""
+    global _held
+    _held = []
+
+
+def release_notes(told: bool = True) -> None:
+    """Tell the notes that were kept back, or forget them, and keep none from now on."""
+    global _held
+    waiting, _held = _held or [], None
+    for each in waiting if told else ():
+        note(each)
+
+
+def note(message: str, at_once: bool = False) -> None:
+    """Tell the user something on stderr, away from results.
+
+    Args:
+        message: What to tell.
+        at_once: Whether it is told even while others are kept back.
+    """
+    if _held is not None and not at_once:
+        _held.append(message)
+        return
     print(message, file=sys.stderr, flush=True)
 
 

@@ -1,14 +1,15 @@
-"""`costeer merge`: tables and report of a study that was run in shards."""
+"""`costeer merge`: tables and report of what was run in shards."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
 from costeer.cli.console import note, progress
-from costeer.cli.scaled import end_if_failed
+from costeer.cli.scaled import FAILED, end_if_failed
 
 
 def merge(
@@ -17,7 +18,7 @@ def merge(
         typer.Argument(help="Folder that the shards shared, or those of each."),
     ],
     out: Annotated[
-        Path | None, typer.Option(help="Folder for the whole study, of several.")
+        Path | None, typer.Option(help="Folder for the whole, of several.")
     ] = None,
     report: Annotated[
         bool, typer.Option(help="Tests, figures and report.html after the tables.")
@@ -25,14 +26,26 @@ def merge(
 ) -> None:
     """Write tables and report of a study whose shards are all done.
 
-    Trials that are missing are named. One that two folders have is taken once if its
-    bytes are the same, and refused if they are not. What is written is the same, byte
-    for byte, as of a study that one process ran.
+    Of a comparison and of a sensitivity analysis too. What is missing is named. What
+    two folders have is taken once if its bytes are the same, and refused if they are
+    not. What is written is the same, byte for byte, as of one process.
 
     Example:
         costeer merge out/study
         costeer merge node-1 node-2 node-3 --out out/study
     """
+    from costeer.comparison.folder import COMPARE_FILE
+    from costeer.sensitivity.run import SETTINGS_FILE
+
+    if (folders[0] / COMPARE_FILE).is_file():
+        _merge_comparison(folders, out, report)
+    elif (folders[0] / SETTINGS_FILE).is_file():
+        _merge_sensitivity(folders, out, report)
+    else:
+        _merge_study(folders, out, report)
+
+
+def _merge_study(folders: list[Path], out: Path | None, report: bool) -> None:
     from costeer.study.merge import merge_study, told
     from costeer.study.report import NUM_STEPS
     from costeer.study.run import full_report
@@ -43,13 +56,58 @@ def merge(
             full_report(folder, lambda _: advance(1))
 
         merged = merge_study(folders, out, write if report else None)
-    if merged.repeated:
-        amount = len(merged.repeated)
-        note(
-            f"costeer: {amount} {'trials are' if amount > 1 else 'trial is'} in more "
-            f"than one folder, with the same bytes: {told(merged.repeated[0])}"
-            f"{f' and {amount - 1} more' if amount > 1 else ''}"
-        )
+    _tell_repeated("trial", [told(each) for each in merged.repeated])
     outcome = merged.outcome
     typer.echo(outcome.folder / ("report.html" if report else "trials.csv"))
     end_if_failed(outcome)
+
+
+def _merge_comparison(folders: list[Path], out: Path | None, report: bool) -> None:
+    from costeer.comparison.merge import merge_comparison
+    from costeer.comparison.report import NUM_STEPS, write_report
+
+    with progress("report", NUM_STEPS) as advance:
+
+        def write(folder: Path) -> None:
+            write_report(folder, lambda _: advance(1))
+
+        merged = merge_comparison(folders, out, write if report else None)
+    _tell_repeated("block of drivers", merged.repeated, "blocks of drivers")
+    outcome = merged.outcome
+    typer.echo(outcome.folder / ("report.html" if report else "trials.csv"))
+    if outcome.num_failed:
+        note(f"costeer: {outcome.num_failed} trials failed; exclusions.csv says why")
+        raise typer.Exit(FAILED)
+
+
+def _merge_sensitivity(folders: list[Path], out: Path | None, report: bool) -> None:
+    """Merge; its tables are made with the page, so that it is always written.
+
+    Raises:
+        ValueError: If no report is wanted, or the shards cannot be merged.
+        OSError: If a file cannot be read or written.
+    """
+    from costeer.sensitivity.merge import merge_sensitivity
+    from costeer.sensitivity.report import write_report
+
+    if not report:
+        raise ValueError(
+            f"{folders[0]} is a sensitivity analysis, whose tables come with its "
+            "report; leave --no-report out"
+        )
+    merged = merge_sensitivity(folders, out)
+    _tell_repeated("sample", merged.repeated)
+    typer.echo(write_report(merged.folder, merged.settings, merged.outcomes))
+
+
+def _tell_repeated(what: str, repeated: Sequence[str], many: str = "") -> None:
+    """Say what several folders have."""
+    from costeer.pages.numerals import plural
+
+    if repeated:
+        amount, verb = len(repeated), "are" if len(repeated) > 1 else "is"
+        more = f" and {amount - 1} more" if amount > 1 else ""
+        note(
+            f"costeer: {plural(amount, what, many)} {verb} in more than one folder, "
+            f"with the same bytes: {repeated[0]}{more}"
+        )

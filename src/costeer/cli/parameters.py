@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated
+import json as json_text
+from typing import TYPE_CHECKING, Annotated, NamedTuple
 
 import typer
 
 from costeer.cli import plug_ins
-from costeer.cli.console import print_table
+from costeer.cli.console import note, print_table
 
 if TYPE_CHECKING:
     from costeer.base.described import Described
+    from costeer.loop.scenario import TrialSetup
+    from costeer.methods.registry import AnyMethod
 
 
 def parameters(
@@ -34,8 +37,8 @@ def parameters(
         costeer parameters --method my_method.py --json
     """
     from costeer.loop.inputs import car_of
-    from costeer.loop.overrides import parameter_list
-    from costeer.loop.scenario import TrialSetup, loop_parameters
+    from costeer.loop.scenario import TrialSetup
+    from costeer.methods.registry import method_named
 
     setup = TrialSetup(
         condition=condition,
@@ -43,12 +46,63 @@ def parameters(
         car=car_of(car),
         parameters=plug_ins.chosen_values(file, assignments),
     )
-    usual = loop_parameters(setup._replace(parameters=()))
-    listed = parameter_list(loop_parameters(setup), usual)
-    shown = _named(listed, words or [])
+    shown = _named(listed_of(setup), words or [])
     if json:
-        _print_json(shown)
+        typer.echo(json_text.dumps(rows_of(shown), indent=2, ensure_ascii=False))
         return
+    print_parameters(shown, method_named(method))
+
+
+class Shown(NamedTuple):
+    """A parameter as it is printed.
+
+    Attributes:
+        told: Name, value, unit, range, meaning, source.
+        is_own: Whether it is the method's own, not the world's.
+    """
+
+    told: Described
+    is_own: bool
+
+
+def listed_of(setup: TrialSetup) -> list[Shown]:
+    """Every parameter of a trial, the method's first.
+
+    One of the method's own that is in no group is shown with `controller.`, so that
+    its name says whose it is; `--set` takes it without as well. Where the docstring
+    that describes it names no unit, that of a tunable serves.
+
+    Raises:
+        ValueError: If the trial cannot be.
+    """
+    from costeer.base.described import described
+    from costeer.loop.overrides import METHOD, parameter_list
+    from costeer.loop.scenario import loop_parameters
+    from costeer.methods.registry import method_named
+
+    parameters = loop_parameters(setup)
+    usual = loop_parameters(setup._replace(parameters=()))
+    known = {each.name for each in described(parameters)}
+    moved = {each.leaf: each for each in method_named(setup.method).tunables}
+    found = []
+    for each in parameter_list(parameters, usual):
+        place = each.name.removeprefix(METHOD)
+        is_own = each.name not in known or each.name.startswith(METHOD)
+        name = METHOD + place if is_own and "." not in place else each.name
+        told = each._replace(name=name)
+        if is_own and place in moved:
+            told = told._replace(
+                unit=told.unit or moved[place].unit,
+                meaning=told.meaning or moved[place].label,
+            )
+        found.append(Shown(told, is_own))
+    return found
+
+
+def print_parameters(shown: list[Shown], method: AnyMethod) -> None:
+    """Print parameters as a table; say where a plug-in tells no unit."""
+    from costeer.methods.registry import METHODS
+
     print_table(
         ["name", "value", "unit", "from", "to", "what", "source"],
         [
@@ -61,9 +115,16 @@ def parameters(
                 each.meaning,
                 each.source,
             ]
-            for each in shown
+            for each, _ in shown
         ],
     )
+    silent = [each.name for each, is_own in shown if is_own and not each.unit]
+    if silent and method.name not in METHODS:
+        note(
+            f"costeer: method {method.name} names no unit of {', '.join(silent)}; "
+            "units, meanings and sources are read from the Attributes: section of the "
+            "docstring of the class that has the parameter"
+        )
 
 
 def _unit(each: Described) -> str:
@@ -78,7 +139,7 @@ def _unit(each: Described) -> str:
     )
 
 
-def _named(listed: list[Described], words: list[str]) -> list[Described]:
+def _named(listed: list[Shown], words: list[str]) -> list[Shown]:
     """Parameters whose names contain all words.
 
     Raises:
@@ -86,19 +147,20 @@ def _named(listed: list[Described], words: list[str]) -> list[Described]:
     """
     from costeer.base.described import nearest
 
-    shown = [each for each in listed if all(word in each.name for word in words)]
+    shown = [each for each in listed if all(word in each.told.name for word in words)]
     if not shown:
         raise ValueError(
             f"no parameter has {' and '.join(words)} in its name"
-            f"{nearest(' '.join(words), (each.name for each in listed))}"
+            f"{nearest(' '.join(words), (each.told.name for each in listed))}"
         )
     return shown
 
 
-def _print_json(shown: list[Described]) -> None:
-    import json
-
-    rows = [each._asdict() | each.allowed._asdict() for each in shown]
-    for row in rows:
+def rows_of(shown: list[Shown]) -> list[dict[str, object]]:
+    """Parameters as plain values."""
+    rows = []
+    for each, is_own in shown:
+        row = each._asdict() | each.allowed._asdict()
         del row["allowed"]
-    typer.echo(json.dumps(rows, indent=2, ensure_ascii=False))
+        rows.append(row | {"of": "method" if is_own else "trial"})
+    return rows

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 Method = Annotated[
     str,
     typer.Option(
-        help="Guidance of assisted trials: ibhs, the name of an installed plug-in, "
+        help="Guidance of assisted trials: a name of `costeer methods`, "
         "module:object or FILE.py."
     ),
 ]

@@ -73,7 +73,10 @@ def _remake_comparison(folder: Path, beside: Path | None) -> None:
         ValueError: If it cannot be read, or is to stand beside something.
         OSError: If a file cannot be read or written.
     """
+    from costeer.comparison.folder import read_comparison
     from costeer.comparison.report import NUM_STEPS, remake_report
+    from costeer.comparison.results import num_missing
+    from costeer.pages.numerals import plural
 
     if beside is not None:
         raise ValueError(
@@ -82,6 +85,12 @@ def _remake_comparison(folder: Path, beside: Path | None) -> None:
         )
     with progress("report", NUM_STEPS) as advance:
         page = remake_report(folder, lambda _: advance(1))
+    missing = num_missing(read_comparison(folder))
+    if missing:
+        note(
+            f"costeer: the report is without {plural(missing, 'trial')} not driven "
+            "yet; the first lines of compare.yaml hold the command that goes on"
+        )
     typer.echo(page)
 
 

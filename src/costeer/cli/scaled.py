@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
@@ -9,6 +11,7 @@ import typer
 from costeer.cli.console import note
 
 if TYPE_CHECKING:
+    from costeer.scale.shard import Shard
     from costeer.study.run import StudyOutcome
 
 FAILED = 1
@@ -22,6 +25,34 @@ Cluster = Annotated[
         "Dask scheduler, or ray:N, ray://host:10001.",
     ),
 ]
+
+ShardOption = Annotated[
+    str,
+    typer.Option(
+        "--shard",
+        metavar="I/N",
+        help="Part of the work, as 3/20; slurm in a job array. Then costeer merge.",
+    ),
+]
+
+
+def chosen_shard(text: str) -> Shard:
+    """The shard that `--shard` names; the whole without it.
+
+    Raises:
+        ValueError: If it names none.
+    """
+    from costeer.scale.shard import WHOLE, parse_shard
+
+    return parse_shard(text, os.environ) if text else WHOLE
+
+
+def tell_merge(shard: Shard, folder: Path) -> None:
+    """Say that a shard is done, and how the whole comes of it."""
+    note(
+        f"costeer: shard {shard.number}/{shard.total} is done; when all are: "
+        f"costeer merge {folder}"
+    )
 
 
 def end_if_failed(outcome: StudyOutcome) -> None:

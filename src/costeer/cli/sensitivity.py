@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from costeer.cli.console import note, progress
-from costeer.cli.scaled import Cluster
+from costeer.cli.scaled import Cluster, ShardOption, chosen_shard, tell_merge
 
 
 def sensitivity(
@@ -25,6 +25,7 @@ def sensitivity(
         int | None, typer.Option(help="Threads; as many as processors if not given.")
     ] = None,
     cluster: Cluster = "",
+    shard: ShardOption = "",
 ) -> None:
     """Find which parameters of the guidance decide what, by Sobol indices.
 
@@ -37,16 +38,21 @@ def sensitivity(
         costeer sensitivity --out out/quick --samples 4 --drivers 1 --length 1500
     """
     from costeer.scale.cluster import workers
+    from costeer.scale.shard import part
     from costeer.sensitivity.factors import FACTORS
     from costeer.sensitivity.report import write_report
     from costeer.sensitivity.run import Settings, check_settings, drive_all
 
     settings = check_settings(Settings(samples, drivers, length, seed))
-    total = settings.base * (len(FACTORS) + 2)
+    share = chosen_shard(shard)
+    total = len(part(range(settings.base * (len(FACTORS) + 2)), share))
     try:
         with workers(jobs, cluster) as pool, progress("samples", total) as advance:
-            outcomes = drive_all(out, settings, pool, advance)
+            outcomes = drive_all(out, settings, pool, advance, shard=share)
     except KeyboardInterrupt:
         note(f"costeer: what is done is kept in {out}; run the same command again")
         raise
+    if share.total > 1:
+        tell_merge(share, out)
+        return
     typer.echo(write_report(out, settings, outcomes))

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import time
 from functools import partial
 from pathlib import Path
@@ -11,8 +10,14 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from costeer.cli import plug_ins
-from costeer.cli.console import note
-from costeer.cli.scaled import Cluster, end_if_failed
+from costeer.cli.console import hold_notes, note, release_notes
+from costeer.cli.scaled import (
+    Cluster,
+    ShardOption,
+    chosen_shard,
+    end_if_failed,
+    tell_merge,
+)
 from costeer.cli.trial_progress import study_progress
 
 if TYPE_CHECKING:
@@ -57,14 +62,7 @@ def study(
     records: Annotated[
         bool, typer.Option(help="Keep trial records, or their measures alone.")
     ] = True,
-    shard: Annotated[
-        str,
-        typer.Option(
-            metavar="I/N",
-            help="Part of the trials, as 3/20; slurm in a job array. Then costeer "
-            "merge.",
-        ),
-    ] = "",
+    shard: ShardOption = "",
 ) -> None:
     """Run the whole experiment with virtual drivers, then the report.
 
@@ -82,10 +80,10 @@ def study(
     """
     from costeer.methods.conditions import parse_conditions
     from costeer.scale.cluster import check_cluster
-    from costeer.scale.shard import WHOLE, parse_shard
     from costeer.study.configuration import StudySettings, check_settings
     from costeer.study.run import Scale
 
+    hold_notes()
     course = plug_ins.chosen_scenario(scenario, length, speed)
     settings = check_settings(
         StudySettings(
@@ -109,7 +107,7 @@ def study(
     scale = Scale(
         cluster=check_cluster(cluster),
         records=records,
-        shard=parse_shard(shard, os.environ) if shard else WHOLE,
+        shard=chosen_shard(shard),
     )
     outcome, seconds = _run(out, settings, jobs, report, scale)
     _print_outcome(outcome, seconds)
@@ -146,6 +144,7 @@ def _run(
         def shown(done: TrialDone) -> None:
             nonlocal ended
             ended = time.monotonic()
+            release_notes()
             display.trial(done)
 
         try:
@@ -158,7 +157,7 @@ def _run(
                 scale=scale,
             )
         except StudyInterrupted as stop:
-            note(f"costeer: {stop}")
+            note(f"costeer: {stop}", at_once=True)
             raise
     return outcome, ended - begun
 
@@ -178,8 +177,5 @@ def _print_end(outcome: StudyOutcome, shard: Shard, report: bool) -> None:
     if shard.total == 1:
         typer.echo(outcome.folder / ("report.html" if report else "trials.csv"))
     else:
-        note(
-            f"costeer: shard {shard.number}/{shard.total} is done; when all are: "
-            f"costeer merge {outcome.folder}"
-        )
+        tell_merge(shard, outcome.folder)
     end_if_failed(outcome)

@@ -42,6 +42,11 @@ class Criterion(NamedTuple):
     digits: int = 3
     speaks: bool = False
 
+    @property
+    def is_count(self) -> bool:
+        """Whether it counts events, so that zero is no event at all."""
+        return self.unit in ("per drive", "1/km")
+
 
 _SAFETY = (
     Criterion(

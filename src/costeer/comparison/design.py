@@ -198,9 +198,9 @@ def setup_of(settings: ComparisonSettings, cell: Cell, participant: int) -> Tria
     return with_mistake(setup, cell.mistake)
 
 
-def num_trials(plan: Plan) -> int:
+def num_trials(blocks: Sequence[Block]) -> int:
     """How many trials there are [-]."""
-    return sum(len(block.participants) for block in plan.blocks)
+    return sum(len(block.participants) for block in blocks)
 
 
 def _entrant(given: str | AnyMethod) -> Entrant:

@@ -31,6 +31,8 @@ BEFORE, AFTER = 6.0, 4.0
 """What is drawn around the event [s]."""
 
 _COLUMNS = 3
+_TWO_ROWS = 4
+"""So many drives stand in two rows of two, without a hole."""
 _CLOSER_MM = 6.5
 """The torques stand so much nearer to the path above than to the next drive."""
 
@@ -47,7 +49,8 @@ def worst_drawings(folder: Path, cases: Sequence[WorstCase]) -> Exhibit:
     name, title = "worst-cases", "The worst drive of each method"
     if not cases:
         return not_drawn(name, title, "Nobody left a lane or hit anything.")
-    num_rows = -(-len(cases) // _COLUMNS)
+    num_columns = 2 if len(cases) == _TWO_ROWS else min(len(cases), _COLUMNS)
+    num_rows = -(-len(cases) // num_columns)
     figure = new_figure(FULL_WIDTH_MM, _height_mm(num_rows))
     margins = Margins(
         left=12.0,
@@ -57,9 +60,9 @@ def worst_drawings(folder: Path, cases: Sequence[WorstCase]) -> Exhibit:
         between_columns=13.0,
         between_rows=9.0,
     )
-    grid = panels(figure, 2 * num_rows, _COLUMNS, margins, None, (3, 2) * num_rows)
-    for place in range(_COLUMNS * num_rows):
-        row, column = divmod(place, _COLUMNS)
+    grid = panels(figure, 2 * num_rows, num_columns, margins, None, (3, 2) * num_rows)
+    for place in range(num_columns * num_rows):
+        row, column = divmod(place, num_columns)
         upper, lower = grid[2 * row][column], grid[2 * row + 1][column]
         if place >= len(cases):
             upper.set_axis_off()
@@ -68,7 +71,11 @@ def worst_drawings(folder: Path, cases: Sequence[WorstCase]) -> Exhibit:
         _raise(lower, _CLOSER_MM / _height_mm(num_rows))
         _draw(upper, lower, folder / WORST / cases[place].record, cases[place])
     handles, labels = grid[1][0].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="upper right", ncol=2)
+    if beside := len(cases) % num_columns:  # the last row has a place left
+        hole = grid[2 * num_rows - 2][beside]
+        hole.legend(handles, labels, loc="upper left")
+    else:
+        figure.legend(handles, labels, loc="upper right", ncol=2)
     caption = (
         "Upper: lateral position of the car's middle (line) and sides (band), lines of "
         "the road grey. Lower: torques at the wheel, positive to the left. Time is "

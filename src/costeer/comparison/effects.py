@@ -27,6 +27,9 @@ LEVEL = 0.05
 METHODS, MISTAKES = "methods", "mistakes"
 """Kinds of comparisons: two methods, or a method with a mistake and without."""
 
+NO_EVENTS = "no events"
+"""Of a row in which what is counted happened to nobody."""
+
 Values = NDArray[np.float64]
 
 
@@ -171,6 +174,9 @@ def paired_effect(
     difference = test.mean_first - test.mean_second
     if not math.isfinite(test.p) and n >= 2:
         test = _without_variance(test, difference, n)
+        events = first[both].any() or second[both].any()
+        if criterion(names[1]).is_count and not events:
+            test = test._replace(note=NO_EVENTS)
     return EffectRow(
         *names,
         n=n,

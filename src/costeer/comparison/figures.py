@@ -19,10 +19,12 @@ from costeer.comparison.criteria import (
     SPEAKING,
     Criterion,
 )
-from costeer.comparison.effects import LEVEL, METHODS, EffectRow
+from costeer.comparison.effects import LEVEL, METHODS, NO_EVENTS, EffectRow
 from costeer.comparison.mistakes import NONE
 from costeer.comparison.results import Results
+from costeer.comparison.winners import turned
 from costeer.pages.exhibit import Exhibit, not_drawn
+from costeer.pages.numerals import listed
 from costeer.pages.style import (
     FULL_WIDTH_MM,
     INK,
@@ -48,6 +50,10 @@ _OTHERS = (
 )
 _MARKERS = ("s", "^", "D", "v", "P", "X", "<", ">", "p", "h", "*", "d", "8")
 _COLUMNS = 3
+LETTERS = "abcdefghijklmnopqrstuvwxyz"
+_LEGEND_ROW_MM = 4.0
+_TALL = 9
+"""Rows of a legend that fit beside panels [-]."""
 
 
 class Look(NamedTuple):
@@ -77,7 +83,9 @@ def effects_against(
     """Forest plots of every other method minus a baseline, one panel a measure."""
     name, title = f"against-{baseline}", f"Every method against {baseline}"
     rows = [_turned(row, baseline) for row in effects if _is_of(row, baseline)]
+    rows = [row for row in rows if row.note != NO_EVENTS]
     shown = [each for each in SPEAKING if any(r.measure == each.name for r in rows)]
+    silent = [each.title for each in SPEAKING if each.is_count and each not in shown]
     others = [each for each in results.methods if each != baseline]
     others = [each for each in others if any(row.first == each for row in rows)]
     if not rows:
@@ -86,54 +94,72 @@ def effects_against(
     margins = Margins(
         left=_label_width(others),
         right=3.0,
-        top=14.0,
+        top=7.0,
         bottom=12.0,
         between_columns=6.0,
         between_rows=17.0,
     )
-    figure, flat = _grid(len(shown), 17.0, height + 17.0, margins)
-    for place, (axes, measure) in enumerate(zip(flat, shown, strict=True)):
+    legend = _scenario_handles(results.scenarios)
+    grid = panel_grid(len(shown), height, margins, legend)
+    for place, (axes, measure) in enumerate(zip(grid.panels, shown, strict=True)):
         own = [row for row in rows if row.measure == measure.name]
         _forest(axes, results, measure, own, others)
-        axes.set_yticklabels(others if place % _COLUMNS == 0 else [])
-        panel_letter(axes, "abcdefghi"[place])
-    figure.legend(
-        handles=_scenario_handles(results.scenarios),
-        loc="upper center",
-        ncol=min(len(results.scenarios), 6),
-    )
+        axes.set_yticklabels(others if place % grid.num_columns == 0 else [])
+        panel_letter(axes, LETTERS[place])
     caption = (
         f"Paired differences, method minus {baseline}, on the same drivers, noise and "
         "traffic: means and 95 % intervals over drivers, one mark a scenario. Filled: "
         f"p < {LEVEL:g} after Benjamini-Hochberg over all comparisons of the measure; "
-        "open: not shown to differ. A method without a value, as a lead time of one "
-        "that starts no lane change, has no mark. The shaded side is the better one."
+        "open: not shown to differ. No mark: no value, as a lead time of a method that "
+        "starts no lane change, or no event with either method. The shaded side is the "
+        f"better one.{_left_out(silent)}"
     )
     described = (
         f"Forest plots with one panel for each of {len(shown)} measures and a row for "
         f"each method; the numbers stand in effects.csv."
     )
-    return Exhibit(name, title, caption, described, figure)
+    return Exhibit(name, title, caption, described, grid.figure)
 
 
-def _grid(
-    number: int, beside_mm: float, each_mm: float, margins: Margins
-) -> tuple[Figure, list[Axes]]:
-    """A figure with so many panels in rows of `_COLUMNS`.
+class Grid(NamedTuple):
+    """A figure, its panels, and in how many columns they stand."""
+
+    figure: Figure
+    panels: list[Axes]
+    num_columns: int
+
+
+def panel_grid(
+    number: int, panel_mm: float, margins: Margins, handles: Sequence[Line2D]
+) -> Grid:
+    """A figure with so many panels and a legend, in which no place is empty.
+
+    The legend fills what the last row has left; if that is full it stands above all.
 
     Args:
         number: Of panels.
-        beside_mm: Height that no row takes.
-        each_mm: Height of a row with the space below it.
-        margins: White space.
+        panel_mm: Height of each.
+        margins: White space without that of the legend.
+        handles: Of the legend.
     """
-    num_rows = -(-number // _COLUMNS)
-    figure = new_figure(FULL_WIDTH_MM, beside_mm + num_rows * each_mm)
-    grid = panels(figure, num_rows, _COLUMNS, margins)
-    flat = [axes for line in grid for axes in line]
+    num_columns = min(number, _COLUMNS)
+    num_rows = -(-number // num_columns)
+    is_full = number == num_columns * num_rows
+    across = max(1, min(len(handles), 5))
+    if is_full:
+        extra = 2.0 + _LEGEND_ROW_MM * -(-len(handles) // across)
+        margins = margins._replace(top=margins.top + extra)
+    height = margins.top + margins.bottom + num_rows * panel_mm
+    figure = new_figure(FULL_WIDTH_MM, height + (num_rows - 1) * margins.between_rows)
+    flat = [a for line in panels(figure, num_rows, num_columns, margins) for a in line]
+    if is_full:
+        figure.legend(handles=handles, loc="upper center", ncol=across)
+        return Grid(figure, flat, num_columns)
     for axes in flat[number:]:
         axes.set_axis_off()
-    return figure, flat[:number]
+    beside = 2 if len(handles) > _TALL and len(flat) - number > 1 else 1
+    flat[number].legend(handles=handles, loc="upper left", ncol=beside)
+    return Grid(figure, flat[:number], num_columns)
 
 
 def _is_of(row: EffectRow, baseline: str) -> bool:
@@ -143,15 +169,7 @@ def _is_of(row: EffectRow, baseline: str) -> bool:
 
 def _turned(row: EffectRow, baseline: str) -> EffectRow:
     """The same comparison as other minus baseline."""
-    if row.second == baseline:
-        return row
-    return row._replace(
-        first=row.second,
-        second=row.first,
-        difference=-row.difference,
-        low=-row.high,
-        high=-row.low,
-    )
+    return row if row.second == baseline else turned(row)
 
 
 def _label_width(names: Sequence[str]) -> float:
@@ -241,41 +259,54 @@ def trade_offs(results: Results) -> Exhibit:
     name, title = "trade-offs", "Trade-offs between aims"
     spoken = {each.aim: each for each in SPEAKING}  # the last one of an aim
     points = {aim: over_scenarios(results, spoken[aim].name) for aim in AIMS}
+    silent = [
+        aim
+        for aim in AIMS
+        if spoken[aim].is_count and not any(p.mean for p in points[aim].values())
+    ]
     pairs = [
         (first, second)
         for first, second in itertools.combinations(AIMS, 2)
         if len(points[first].keys() & points[second].keys()) > 1
+        and not {first, second} & set(silent)
     ]
     if not pairs:
         return not_drawn(name, title, "Two methods with values of two aims are needed.")
     drawn = [m for m in results.methods if any(m in each for each in points.values())]
-    legend_rows = -(-len(drawn) // 5)
-    top = 7.0 + 4.0 * legend_rows
-    margins = Margins(
-        left=14.0,
-        right=3.0,
-        top=top,
-        bottom=10.0,
-        between_columns=17.0,
-        between_rows=14.0,
-    )
-    figure, flat = _grid(len(pairs), top, 44.0, margins)
     looked = looks(results.methods)
-    for place, (axes, (first, second)) in enumerate(zip(flat, pairs, strict=True)):
+    handles = [_method_handle(each, looked[each]) for each in drawn]
+    grid = panel_grid(len(pairs), 30.0, _SCATTER_MARGINS, handles)
+    for axes, letter, (first, second) in zip(grid.panels, LETTERS, pairs, strict=False):
         measures = spoken[first], spoken[second]
         _scatter(axes, (points[first], points[second]), measures, looked)
-        panel_letter(axes, "abcdefghijklmno"[place])
-    handles = [_method_handle(each, looked[each]) for each in drawn]
-    figure.legend(handles=handles, loc="upper center", ncol=5)
-    caption = (
+        panel_letter(axes, letter)
+    described = f"{len(pairs)} scatter plots of methods, one for each pair of aims."
+    return Exhibit(name, title, _trade_off_caption(silent), described, grid.figure)
+
+
+_SCATTER_MARGINS = Margins(
+    left=14.0,
+    right=3.0,
+    top=7.0,
+    bottom=10.0,
+    between_columns=17.0,
+    between_rows=14.0,
+)
+
+
+def _trade_off_caption(silent: list[str]) -> str:
+    return (
         "Means over drivers with 95 % intervals, each driver's mean over the scenarios "
         "in which every method has values. Axes are turned so that the lower left is "
         "better in both. Safety is the smallest time to the line, performance SDLP, "
         "effort the driver's torque, comfort lateral jerk, annoyance false "
-        "activations, intention the lead time."
+        f"activations, intention the lead time.{_left_out(silent)}"
     )
-    described = f"{len(pairs)} scatter plots of methods, one for each pair of aims."
-    return Exhibit(name, title, caption, described, figure)
+
+
+def _left_out(silent: list[str]) -> str:
+    """That a count has no panel, since all of it is zero."""
+    return f" Left out, as there was no event: {listed(silent)}." if silent else ""
 
 
 def over_scenarios(results: Results, measure: str) -> dict[str, Point]:

@@ -12,18 +12,20 @@ import math
 import re
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from functools import partial
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import yaml
 
-from costeer.base.files import prepare_folder, read_whole, write_text
+from costeer.base.files import read_whole, write_text
 from costeer.base.nested import read_mapping
 from costeer.comparison.configuration import differences
 from costeer.comparison.design import Block, Cell
-from costeer.comparison.measures import COLUMNS, TrialOutcome
+from costeer.comparison.measures import COLUMNS, Moment, TrialOutcome
+from costeer.scale.shard import WHOLE, Shard
 from costeer.study.folder import configuration_hash
-from costeer.study.locks import LOCK_FILE, locked
+from costeer.study.locks import held_folder
 
 COMPARE_FILE = "compare.yaml"
 RESULTS = "results"
@@ -49,41 +51,60 @@ class ComparisonFolder(NamedTuple):
 
 @contextmanager
 def opened_comparison(
-    path: Path, configuration: dict[str, Any], command: str
+    path: Path, configuration: dict[str, Any], text: str, shard: Shard = WHOLE
 ) -> Iterator[ComparisonFolder]:
-    """Hold the folder for this configuration, new or begun before.
+    """Hold the folder, or a shard of it, for this configuration, new or begun before.
+
+    Args:
+        path: Made if it is not there.
+        configuration: All that determines the results.
+        text: Of `compare.yaml`.
+        shard: To hold; others may work on the other shards meanwhile.
 
     Raises:
         ValueError: If it is another comparison's, holds other things, or another
             process works in it.
         OSError: If it cannot be written.
     """
-    prepare_folder(path, COMPARE_FILE, "comparison", (LOCK_FILE,))
-    with locked(path):
-        folder = ComparisonFolder(
-            path, configuration, configuration_hash(configuration)
-        )
-        if (path / COMPARE_FILE).exists():
-            there = read_comparison(path)
-            if there.hash != folder.hash:
-                told = differences(there.configuration, configuration)
-                raise ValueError(
-                    f"{path} holds another comparison: {told}. Choose another folder, "
-                    "or give the options, files and version of that one to resume it"
-                )
-        else:
-            write_text(path / COMPARE_FILE, _text(folder, command))
-        (path / RESULTS).mkdir(exist_ok=True)
-        for leftover in path.rglob("*.tmp"):
-            leftover.unlink(missing_ok=True)
+    folder = ComparisonFolder(path, configuration, configuration_hash(configuration))
+    begin = partial(_begin, folder, text)
+    with held_folder(path, COMPARE_FILE, "comparison", shard, begin):
         yield folder
 
 
-def _text(folder: ComparisonFolder, command: str) -> str:
+def _begin(folder: ComparisonFolder, text: str, alone: bool) -> None:
+    """Write what the comparison is, or see that the folder is the same one's."""
+    path = folder.path
+    if (path / COMPARE_FILE).exists():
+        refuse_other(read_comparison(path), folder)
+    else:
+        write_text(path / COMPARE_FILE, text)
+    (path / RESULTS).mkdir(exist_ok=True)
+    if alone:
+        for leftover in path.rglob("*.tmp"):
+            leftover.unlink(missing_ok=True)
+
+
+def refuse_other(there: ComparisonFolder, wanted: ComparisonFolder) -> None:
+    """Refuse a folder that holds another comparison than the wanted one.
+
+    Raises:
+        ValueError: Saying in what they differ.
+    """
+    if there.hash != wanted.hash:
+        told = differences(there.configuration, wanted.configuration)
+        raise ValueError(
+            f"{there.path} holds another comparison: {told}. Choose another folder, "
+            "or give the options, files and version of that one to resume it"
+        )
+
+
+def comparison_text(configuration: dict[str, Any], command: str) -> str:
+    """What `compare.yaml` holds: the command as a comment, then all that decides."""
     content = {
         "format": FORMAT,
-        "configuration_hash": folder.hash,
-        "configuration": folder.configuration,
+        "configuration_hash": configuration_hash(configuration),
+        "configuration": configuration,
     }
     body = yaml.safe_dump(content, sort_keys=False, allow_unicode=True, width=88)
     return f"# A comparison. Run it again, or finish it, with\n#   {command}\n{body}"
@@ -143,10 +164,7 @@ def write_block(
         "comparison": folder.hash,
         "cell": cell_name(block.cell),
         "columns": list(COLUMNS),
-        "trials": [
-            each._asdict() | {"values": [_written(value) for value in each.values]}
-            for each in outcomes
-        ],
+        "trials": [_plain(each) for each in outcomes],
     }
     told = {"sha256": _digest(content), "results": content}
     text = json.dumps(told, allow_nan=False, separators=(",", ":"))
@@ -176,6 +194,7 @@ def read_block(folder: ComparisonFolder, block: Block) -> list[TrialOutcome] | N
                 failure=str(each["failure"]),
                 torque_faults=int(each["torque_faults"]),
                 values=tuple(_read(value) for value in each["values"]),
+                disputes=_moments(each["disputes"]),
             )
             for each in content["trials"]
         ]
@@ -187,6 +206,22 @@ def read_block(folder: ComparisonFolder, block: Block) -> list[TrialOutcome] | N
     who = tuple(each.participant for each in outcomes)
     whole = all(len(each.values) == len(COLUMNS) for each in outcomes)
     return outcomes if said == wanted and who == block.participants and whole else None
+
+
+def _plain(outcome: TrialOutcome) -> dict[str, Any]:  # Any: of JSON
+    moments = outcome.disputes
+    return outcome._asdict() | {
+        "values": list(map(_written, outcome.values)),
+        "disputes": None
+        if moments is None
+        else [list(map(_written, each)) for each in moments],
+    }
+
+
+def _moments(told: Any) -> tuple[Moment, ...] | None:  # Any: of JSON
+    if told is None:
+        return None
+    return tuple(Moment(*(_read(value) for value in each)) for each in told)
 
 
 def _written(value: float) -> float | str | None:

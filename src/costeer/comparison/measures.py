@@ -6,17 +6,20 @@ import math
 from typing import NamedTuple
 
 import numpy as np
+import pandas as pd
 
 from costeer.comparison.criteria import NAMES
 from costeer.records.columns import TrialRecord
 from costeer.study.definitions import Measure, under_assistance
 from costeer.study.detection import FALSE
+from costeer.study.disputes import in_lane_change
 from costeer.study.effort import (
     conflict_share,
     lateral_jerk_rms,
     opposing_torque_rms,
     wheel_rate_rms,
 )
+from costeer.study.inconsistencies import find_inconsistencies
 from costeer.study.manoeuvres import overshoot
 from costeer.study.measures import prepared
 from costeer.study.scenario import surroundings
@@ -37,6 +40,19 @@ _OF_A_TRIGGER = (
 """Without assistance a trigger moves nothing: nobody is annoyed or helped by it."""
 
 
+class Moment(NamedTuple):
+    """When an inconsistency came.
+
+    Attributes:
+        from_crossing: After the nearest crossing of a lane change [s], negative before
+            it; NaN if there is none near.
+        share: Of the lane change that had passed, 0 to 1; NaN outside of one.
+    """
+
+    from_crossing: float
+    share: float
+
+
 class TrialOutcome(NamedTuple):
     """What a trial came to.
 
@@ -46,12 +62,14 @@ class TrialOutcome(NamedTuple):
         torque_faults: Samples in which the method asked for a torque that was not
             finite or over the limit, and got none or the limit [-].
         values: By the names of `COLUMNS`, SI units; NaN if not defined.
+        disputes: When inconsistencies came; None of a method that gives no verdict.
     """
 
     participant: int
     failure: str
     torque_faults: int
     values: tuple[float, ...]
+    disputes: tuple[Moment, ...] | None = None
 
 
 def outcome_of(participant: int, record: TrialRecord) -> TrialOutcome:
@@ -64,7 +82,18 @@ def outcome_of(participant: int, record: TrialRecord) -> TrialOutcome:
         failure="",
         torque_faults=faults if isinstance(faults, int) else 0,
         values=tuple(float(values[name]) for name in COLUMNS),
+        disputes=_disputes(trial),
     )
+
+
+def _disputes(trial: Trial) -> tuple[Moment, ...] | None:
+    """When the inconsistencies of a trial came; None without a verdict."""
+    found = find_inconsistencies(trial.columns, trial.parameters, trial.method)
+    if isinstance(found, str) or not under_assistance(trial.columns):
+        return None
+    changes = () if isinstance(trial.segments, str) else trial.segments.changes
+    table = pd.DataFrame([each._asdict() for each in changes]) if changes else None
+    return tuple(Moment(*in_lane_change(each.start_time, table)) for each in found)
 
 
 def failed(participant: int, reason: str) -> TrialOutcome:

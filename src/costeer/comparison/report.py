@@ -37,6 +37,9 @@ from costeer.comparison.tables import (
     winners_table,
     worst_table,
 )
+from costeer.comparison.timing import NAME as TIMING
+from costeer.comparison.timing import TITLE as TIMING_TITLE
+from costeer.comparison.timing import inconsistency_timing
 from costeer.comparison.winners import Loss, WinnerRow, losses, winner_rows
 from costeer.comparison.words import (
     CAUTION,
@@ -175,7 +178,11 @@ def _pictures(folder: Path, material: Material) -> dict[str, Picture]:
             for name in BASELINES
             if name in results.methods
         ]
-        exhibits += [trade_offs(results), worst_drawings(folder, material.cases)]
+        exhibits += [
+            trade_offs(results),
+            inconsistency_timing(results),
+            worst_drawings(folder, material.cases),
+        ]
         return {each.name: picture(each) for each in exhibits}
 
 
@@ -203,6 +210,7 @@ def _sections(material: Material, pictures: dict[str, Picture]) -> list[Section]
             (*against, means_table(results, material.means)),
         ),
         Section("trade-offs", "Trade-offs", (), (pictures["trade-offs"],)),
+        Section(TIMING, TIMING_TITLE, (), (pictures[TIMING],)),
         _worst_section(material.cases, pictures["worst-cases"]),
     ]
     if any(name != NONE for name in results.mistakes):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import itertools
 import math
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -22,7 +23,9 @@ from costeer.comparison.design import (
 )
 from costeer.comparison.entrants import Course, Entrant
 from costeer.comparison.folder import ComparisonFolder, read_block
-from costeer.comparison.measures import COLUMNS, TrialOutcome
+from costeer.comparison.measures import COLUMNS, Moment, TrialOutcome
+from costeer.scenarios.definition import Scenario
+from costeer.scenarios.reading import scenario_of
 from costeer.study.trial_tables import cell as text_of
 
 if TYPE_CHECKING:
@@ -56,6 +59,8 @@ class Results(NamedTuple):
         mistakes: Names, "none" first.
         values: Of each cell, shape `(participant, column)`, columns as
             `measures.COLUMNS`; NaN where there is no value.
+        disputes: By cell, when inconsistencies came in all drives together; no entry
+            for a method that gives no verdict.
         failures: Trials without a result.
         faults: By method, samples with a torque that was not finite or over the limit.
         left_out: Combinations that contradict themselves.
@@ -67,6 +72,7 @@ class Results(NamedTuple):
     scenarios: tuple[str, ...]
     mistakes: tuple[str, ...]
     values: dict[Key, NDArray[np.float64]]
+    disputes: dict[Key, tuple[Moment, ...]]
     failures: tuple[Failure, ...]
     faults: dict[str, int]
     left_out: tuple[LeftOut, ...]
@@ -94,6 +100,7 @@ def gathered(folder: ComparisonFolder) -> Results:
     cells = cells_from(configuration)
     participants = int(configuration["participants"])
     values: dict[Key, NDArray[np.float64]] = {}
+    disputes: dict[Key, tuple[Moment, ...]] = {}
     failures: list[Failure] = []
     faults: dict[str, int] = {}
     num_missing = 0
@@ -106,6 +113,9 @@ def gathered(folder: ComparisonFolder) -> Results:
                 table[each.participant - 1] = each.values
                 writer.writerow(_row(cell, each))
             values[_key(cell)] = table
+            judged = [each.disputes for each in outcomes if each.disputes is not None]
+            if judged:
+                disputes[_key(cell)] = tuple(itertools.chain.from_iterable(judged))
             failures += [_failure(cell, each) for each in outcomes if each.failure]
             name = cell.entrant.name
             found = sum(each.torque_faults for each in outcomes)
@@ -116,6 +126,7 @@ def gathered(folder: ComparisonFolder) -> Results:
         scenarios=tuple(configuration["scenarios"]),
         mistakes=tuple(configuration["mistakes"]),
         values=values,
+        disputes=disputes,
         failures=tuple(failures),
         faults={name: number for name, number in faults.items() if number},
         left_out=left_out,
@@ -127,11 +138,31 @@ def cells_from(configuration: dict[str, Any]) -> tuple[Cell, ...]:
     """The cells of a comparison, by names alone: nothing of them can be driven."""
     entrants = [Entrant(name, name, True) for name in configuration["methods"]]
     courses = [
-        Course(name, name, float(each["length"]), float(each["speed"]))
+        Course(name, scenario_in(name, each), each["length"], each["speed"])
         for name, each in configuration["scenarios"].items()
     ]
     left_out = [LeftOut(*each) for each in configuration["left_out"]]
     return cells_of(entrants, courses, configuration["mistakes"], left_out)
+
+
+def num_missing(folder: ComparisonFolder) -> int:
+    """How many trials have not been driven yet [-].
+
+    Raises:
+        OSError: If a file cannot be read.
+    """
+    participants = int(folder.configuration["participants"])
+    blocks = blocks_of(cells_from(folder.configuration), participants)
+    return sum(len(b.participants) for b in blocks if read_block(folder, b) is None)
+
+
+def scenario_in(name: str, told: dict[str, Any]) -> str | Scenario:
+    """A scenario as `compare.yaml` tells of it: by name, or itself.
+
+    Raises:
+        ValueError: If it cannot be.
+    """
+    return scenario_of(told["content"]) if "content" in told else name
 
 
 def _outcomes(

@@ -21,12 +21,12 @@ from costeer.comparison.design import (
     ComparisonSettings,
     Plan,
     checked,
-    num_trials,
     planned,
     setup_of,
 )
 from costeer.comparison.folder import (
     ComparisonFolder,
+    comparison_text,
     opened_comparison,
     read_block,
     record_path,
@@ -39,11 +39,27 @@ from costeer.methods.registry import METHODS
 from costeer.records.record import write_record
 from costeer.scale.cluster import workers
 from costeer.scale.jobs import JobsStoppedError, Pool, run_jobs
+from costeer.scale.shard import WHOLE, Shard, part
 from costeer.study.run import StudyInterrupted, ignore
 from costeer.study.trials import LENGTH_OF_TRY, Simulate
 
 USUAL = ComparisonSettings()
 """All methods, six scenarios, 50 drivers."""
+
+
+class Placement(NamedTuple):
+    """Where the work is done, and which part of it; no result depends on it.
+
+    Attributes:
+        cluster: Whose workers drive, as `local:4`; empty for threads here.
+        shard: Part of the blocks, for one job of many.
+    """
+
+    cluster: str = ""
+    shard: Shard = WHOLE
+
+
+HERE = Placement()
 
 
 class BlockDone(NamedTuple):
@@ -69,7 +85,7 @@ class ComparisonOutcome(NamedTuple):
 
     Attributes:
         folder: Where everything lies.
-        num_trials: Of the comparison.
+        num_trials: Of the comparison, or of the shard.
         num_resumed: Of them, not simulated again.
         num_failed: Of them, without a result.
         driver_seconds: Simulated in this run [s].
@@ -123,7 +139,7 @@ def run_comparison(
     settings: ComparisonSettings = USUAL,
     *,
     jobs: int | None = None,
-    cluster: str = "",
+    placement: Placement = HERE,
     report: Callable[[Path], object] | None = full_report,
     progress: Callable[[BlockDone], None] = ignore,
     simulate: Simulate = simulate_trial,
@@ -135,7 +151,8 @@ def run_comparison(
         settings: What to compare.
         jobs: Blocks at the same time; as many as processors if None. The results do
             not depend on it.
-        cluster: Whose workers drive, as `local:4`; empty for threads.
+        placement: Cluster and shard. A shard writes no table and no report:
+            `merge_comparison` does when all are there.
         report: Writes tables, figures and report; None for the results only.
         progress: Called in this thread with each block that is done.
         simulate: Makes the record of a trial.
@@ -148,19 +165,26 @@ def run_comparison(
     """
     full, plan = prepared(settings, simulate)
     configuration = comparison_configuration(full, plan)
-    command = comparison_command(settings)
+    text = comparison_text(configuration, comparison_command(settings))
+    blocks = part(plan.blocks, placement.shard)
     with (
-        workers(jobs, cluster) as pool,
-        opened_comparison(Path(out), configuration, command) as folder,
+        workers(jobs, placement.cluster) as pool,
+        opened_comparison(Path(out), configuration, text, placement.shard) as folder,
     ):
         work = partial(drive_block, folder, full, simulate)
-        done = _all_done(folder, plan, work, pool, progress)
-        write_worst(folder, full, plan, simulate)
-        if report is not None:
-            report(folder.path)
+        done = _all_done(folder, blocks, work, pool, progress)
+        if placement.shard.total == 1:
+            write_worst(folder, full, plan, simulate)
+            if report is not None:
+                report(folder.path)
+    return summed(folder.path, done)
+
+
+def summed(path: Path, done: Sequence[BlockDone]) -> ComparisonOutcome:
+    """What there is, in numbers."""
     return ComparisonOutcome(
-        folder=folder.path,
-        num_trials=num_trials(plan),
+        folder=path,
+        num_trials=sum(each.num_trials for each in done),
         num_resumed=sum(each.num_trials for each in done if each.resumed),
         num_failed=sum(each.num_failed for each in done),
         driver_seconds=sum(each.driver_seconds for each in done if not each.resumed),
@@ -180,10 +204,11 @@ def drive_block(
     """
     drive = partial(_outcome, folder, settings, simulate, block)
     outcomes = [drive(participant) for participant in block.participants]
-    return _block_done(outcomes, resumed=False)._replace(outcomes=outcomes)
+    return block_done(outcomes, resumed=False)._replace(outcomes=outcomes)
 
 
-def _block_done(outcomes: Sequence[TrialOutcome], resumed: bool) -> BlockDone:
+def block_done(outcomes: Sequence[TrialOutcome], resumed: bool) -> BlockDone:
+    """What the results of a block come to."""
     lasted = COLUMNS.index("duration")
     return BlockDone(
         num_trials=len(outcomes),
@@ -217,7 +242,7 @@ def _outcome(
 
 def _all_done(
     folder: ComparisonFolder,
-    plan: Plan,
+    blocks: Sequence[Block],
     work: Callable[[Block], BlockDone],
     pool: Pool,
     progress: Callable[[BlockDone], None],
@@ -225,12 +250,12 @@ def _all_done(
     """Drive the blocks whose results are not there; write each as it comes."""
     done: list[BlockDone] = []
     missing: list[Block] = []
-    for block in plan.blocks:
+    for block in blocks:
         there = read_block(folder, block)
         if there is None or any(each.failure for each in there):
             missing.append(block)
             continue
-        done.append(_block_done(there, resumed=True))
+        done.append(block_done(there, resumed=True))
         progress(done[-1])
 
     def keep(block: Block, driven: BlockDone) -> BlockDone:
@@ -241,7 +266,7 @@ def _all_done(
         return done + run_jobs(work, missing, pool, progress, keep)
     except JobsStoppedError as stop:
         kept = (
-            f"{len(done) + stop.num_done} of {len(plan.blocks)} blocks are done and "
+            f"{len(done) + stop.num_done} of {len(blocks)} blocks are done and "
             f"kept in {folder.path}; run the same command again to go on from there"
         )
         cause = stop.__cause__

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from costeer.comparison.criteria import RANKED, SPEAKING, Criterion, criterion
-from costeer.comparison.effects import MISTAKES, EffectRow, MeanRow
+from costeer.comparison.effects import MISTAKES, NO_EVENTS, EffectRow, MeanRow
 from costeer.comparison.mistakes import NONE
 from costeer.comparison.results import Results
 from costeer.comparison.winners import NOBODY, TIE, Loss, WinnerRow
@@ -16,8 +16,16 @@ from costeer.comparison.worst import WorstCase
 from costeer.pages.numerals import NOTHING, interval, number, signed
 from costeer.pages.tables import Table
 
+NO_BREAK = "\u00a0"
 MOST_NAMED = 3
 """Methods of a tie that are named in a cell; more are counted [-]."""
+
+
+WINNERS_NOTE = (
+    "Without mistakes. Below a winner: its difference to the method with the next best "
+    "mean, with the 95 % interval of Student's t of paired differences. A tie names "
+    "the method with the best mean first; no events: it happened to nobody."
+)
 
 
 def winners_table(results: Results, rows: Sequence[WinnerRow], speaking: bool) -> Table:
@@ -32,7 +40,7 @@ def winners_table(results: Results, rows: Sequence[WinnerRow], speaking: bool) -
     by_place = {(row.measure, row.scenario): row for row in rows if row.mistake == NONE}
     cells = [
         (
-            speaking_title(each.name) if speaking else each.title,
+            f"{speaking_title(each.name) if speaking else each.title} [{each.unit}]",
             *(winner_text(by_place[each.name, s]) for s in results.scenarios),
         )
         for each in shown
@@ -40,7 +48,7 @@ def winners_table(results: Results, rows: Sequence[WinnerRow], speaking: bool) -
     return Table(
         name="winners",
         title="Winners and ties in every measure",
-        note="Without mistakes. A tie names the method with the best mean first.",
+        note=WINNERS_NOTE,
         header=("Aim" if speaking else "Measure", *results.scenarios),
         rows=tuple(cells),
         num_labels=1 + len(results.scenarios),
@@ -49,17 +57,31 @@ def winners_table(results: Results, rows: Sequence[WinnerRow], speaking: bool) -
 
 
 def winner_text(row: WinnerRow) -> str:
-    """A winner, or who ties: `tie: a, b`, `tie of 7: a first`, `tie of all 11`."""
+    """A winner and by how much, or who ties.
+
+    As `tie: a, b`, `tie of 7: a first`, `tie of all 11`, `tie (no events)`.
+    """
     if row.verdict == NOBODY:
         return NOTHING
+    if row.note == NO_EVENTS:
+        return f"tie ({NO_EVENTS})"
     if row.verdict != TIE:
-        return row.best
+        return f"{row.best} wins\n{_lead(row)}"
     names = [row.best, *row.tied.split("; ")]
     if len(names) == row.num_ranked > 2:
         return f"tie of all {len(names)}"
     if len(names) <= MOST_NAMED:
         return "tie: " + ",\n".join(names)
     return f"tie of {len(names)}:\n{row.best} first"
+
+
+def _lead(row: WinnerRow) -> str:
+    """By how much a winner is ahead of the next: difference, interval, of whom."""
+    shown = criterion(row.measure)
+    low, high = shown.factor * row.low, shown.factor * row.high
+    by = signed(shown.factor * row.difference, shown.digits)
+    between = interval(low, high, shown.digits).replace(" ", NO_BREAK)
+    return f"{by}\n{between}\nto {row.second}"
 
 
 def losses_table(found: Sequence[Loss]) -> Table:
@@ -109,7 +131,8 @@ def means_table(results: Results, means: Sequence[MeanRow]) -> Table:
         name="means",
         title="Means over drivers",
         note="With the half width of their 95 % intervals; a dash where no driver has "
-        "a value. means.csv has all measures.",
+        "a value, no events where nothing happened in any drive. means.csv has all "
+        "measures.",
         header=(
             "Scenario",
             "Method",
@@ -121,6 +144,8 @@ def means_table(results: Results, means: Sequence[MeanRow]) -> Table:
 
 
 def _mean_text(shown: Criterion, row: MeanRow) -> str:
+    if shown.is_count and row.mean == 0.0:
+        return NO_EVENTS  # none is negative
     mean = number(shown.factor * row.mean, shown.digits)
     half = shown.factor * (row.high - row.mean)
     return f"{mean} ± {number(half, shown.digits)}" if np.isfinite(half) else mean
@@ -157,6 +182,8 @@ def _change_text(shown: Criterion, rows: Sequence[EffectRow]) -> str:
     known = [row.difference for row in of_it if np.isfinite(row.difference)]
     if not known:
         return NOTHING
+    if all(row.note == NO_EVENTS for row in of_it):
+        return NO_EVENTS
     if not any(known):
         return "unchanged"
     worse = sum(row.better == NONE for row in of_it)

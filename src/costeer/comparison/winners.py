@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from costeer.comparison.criteria import RANKED, Criterion, criterion
-from costeer.comparison.effects import METHODS, EffectRow
+from costeer.comparison.effects import METHODS, NO_EVENTS, EffectRow
 from costeer.comparison.mistakes import NONE
 from costeer.comparison.results import Results
 
@@ -35,9 +35,14 @@ class WinnerRow(NamedTuple):
         best: The method with the best mean.
         mean: Of it, SI unit.
         tied: Methods that it is not shown to be better than, separated by "; ".
+        second: The method with the next best mean.
+        difference: Best minus second, paired by driver, SI unit.
+        low: Lower end of its 95 % interval.
+        high: Upper end of it.
         num_ranked: Methods that were compared.
         not_ranked: Those that were not, separated by "; ": trials of theirs failed, or
             half of the drivers have no value.
+        note: "no events" if what is counted happened to nobody.
     """
 
     aim: str
@@ -48,8 +53,13 @@ class WinnerRow(NamedTuple):
     best: str
     mean: float
     tied: str
+    second: str
+    difference: float
+    low: float
+    high: float
     num_ranked: int
     not_ranked: str
+    note: str = ""
 
 
 class Loss(NamedTuple):
@@ -66,49 +76,70 @@ class Loss(NamedTuple):
 
 def winner_rows(results: Results, effects: Sequence[EffectRow]) -> list[WinnerRow]:
     """The winner or the tie of every measure, road and mistake."""
-    better = {
-        (row.measure, row.scenario, row.mistake, row.first, row.second): row.better
+    pairs = {
+        (row.measure, row.scenario, row.mistake, *names): turned
         for row in effects
         if row.kind == METHODS
+        for names, turned in _both_ways(row)
     }
     return [
-        _winner(results, better, each, scenario, mistake)
+        _winner(results, pairs, each, scenario, mistake)
         for each in RANKED
         for scenario in results.scenarios
         for mistake in results.mistakes
     ]
 
 
+def _both_ways(row: EffectRow) -> list[tuple[tuple[str, str], EffectRow]]:
+    """A comparison as first minus second, and as second minus first."""
+    return [((row.first, row.second), row), ((row.second, row.first), turned(row))]
+
+
+def turned(row: EffectRow) -> EffectRow:
+    """The same comparison as second minus first."""
+    return row._replace(
+        first=row.second,
+        second=row.first,
+        mean_first=row.mean_second,
+        mean_second=row.mean_first,
+        difference=-row.difference,
+        low=-row.high,
+        high=-row.low,
+        statistic=-row.statistic,
+    )
+
+
 def _winner(
     results: Results,
-    better: dict[tuple[str, str, str, str, str], str],
+    pairs: dict[tuple[str, str, str, str, str], EffectRow],
     measure: Criterion,
     scenario: str,
     mistake: str,
 ) -> WinnerRow:
     means = _ranked(results, measure.name, scenario, mistake)
     there = [m for m in results.methods if (scenario, mistake, m) in results.values]
-    named = measure.aim, measure.name, scenario, mistake
     out = "; ".join(name for name in there if name not in means)
+    row = WinnerRow(
+        *(measure.aim, measure.name, scenario, mistake, NOBODY, "", math.nan, "", ""),
+        *(math.nan, math.nan, math.nan, len(means), out),
+    )
     if len(means) < 2:
-        return WinnerRow(*named, NOBODY, "", math.nan, "", len(means), out)
-    best = max(means, key=lambda name: measure.better * means[name])
-    where = measure.name, scenario, mistake
-    tied = [
-        name
-        for name in means
-        if name != best
-        and best
-        not in (better.get((*where, best, name)), better.get((*where, name, best)))
-    ]
-    return WinnerRow(
-        *named,
+        return row
+    ordered = sorted(means, key=lambda name: -measure.better * means[name])
+    best, second = ordered[:2]
+    own = {n: pairs[measure.name, scenario, mistake, best, n] for n in ordered[1:]}
+    tied = [name for name in means if name in own and own[name].better != best]
+    nothing = all(each.note == NO_EVENTS for each in own.values())
+    return row._replace(
         verdict=TIE if tied else WINNER,
         best=best,
         mean=means[best],
         tied="; ".join(tied),
-        num_ranked=len(means),
-        not_ranked=out,
+        second=second,
+        difference=own[second].difference,
+        low=own[second].low,
+        high=own[second].high,
+        note=NO_EVENTS if nothing else "",
     )
 
 

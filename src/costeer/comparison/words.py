@@ -20,7 +20,8 @@ PAPERS = "ibhs"
 RULE = (
     "The method with the best mean wins if it is shown to be better than every other "
     f"(paired by driver, p < {LEVEL:g} after Benjamini-Hochberg over all comparisons "
-    "of the measure); else it ties with those that it is not shown to be better than."
+    "of the measure); else it ties with those that it is not shown to be better than. "
+    "Below a winner: its difference to the next best mean, with the 95 % interval."
 )
 
 CAUTION = (

@@ -17,6 +17,7 @@ from costeer.base.files import prepare_folder, read_whole, write_text
 from costeer.loop.scenario import PILOT_SEED, TrialSetup
 from costeer.loop.trial import simulate_trial
 from costeer.scale.jobs import JobsStoppedError, Pool, run_jobs
+from costeer.scale.shard import WHOLE, Shard, part
 from costeer.scale.worker import facts
 from costeer.sensitivity.factors import AIMS, DURATION, FACTORS, STRENGTH, Factor
 from costeer.study.measures import lane_change_rows, trial_row
@@ -171,6 +172,7 @@ def drive_all(
     pool: Pool,
     advance: Callable[[int], None],
     work: Callable[[Point], Outcome] | None = None,
+    shard: Shard = WHOLE,
 ) -> list[Outcome]:
     """Drive every sample that is not on disk; return the outcomes of all in order.
 
@@ -180,19 +182,21 @@ def drive_all(
         pool: Threads, or the workers of a cluster.
         advance: Called with the number of samples that are done.
         work: Drives a sample; `driven` if None.
+        shard: Part of the samples; the others are neither driven nor returned.
 
     Raises:
         BaseException: What stopped a sample; those that are done are kept.
     """
     key = prepare(folder, settings)
     every = points(settings)
+    own = part(range(len(every)), shard)
     there = {
         place: known
-        for place in range(len(every))
-        if (known := _read(folder, key, place)) is not None
+        for place in own
+        if (known := read_outcome(folder, key, place)) is not None
     }
     advance(len(there))
-    waiting = [place for place in range(len(every)) if place not in there]
+    waiting = [place for place in own if place not in there]
     work = partial(driven, settings) if work is None else work
 
     def keep(place: int, outcome: Outcome) -> Outcome:
@@ -206,7 +210,7 @@ def drive_all(
     except JobsStoppedError as stopped:
         raise (stopped.__cause__ or stopped) from None
     there |= dict(zip(waiting, found, strict=True))
-    return [there[place] for place in range(len(every))]
+    return [there[place] for place in own]
 
 
 def _at(
@@ -215,19 +219,20 @@ def _at(
     return work(every[place])
 
 
-def _file(folder: Path, place: int) -> Path:
+def outcome_file(folder: Path, place: int) -> Path:
+    """Where the outcome of a sample lies."""
     return folder / RESULTS / f"{place:06d}.json"
 
 
 def _write(folder: Path, key: str, place: int, outcome: Outcome) -> None:
     values = {n: None if math.isnan(value) else value for n, value in outcome.items()}
-    write_text(_file(folder, place), json.dumps({"key": key, "values": values}))
+    write_text(outcome_file(folder, place), json.dumps({"key": key, "values": values}))
 
 
-def _read(folder: Path, key: str, place: int) -> Outcome | None:
+def read_outcome(folder: Path, key: str, place: int) -> Outcome | None:
     """The outcome of a sample; None if there is none to believe."""
     try:
-        content: Any = json.loads(read_whole(_file(folder, place)))
+        content: Any = json.loads(read_whole(outcome_file(folder, place)))
         values: Mapping[str, Any] = content["values"]
         if content["key"] != key:
             return None

@@ -9,23 +9,18 @@ from __future__ import annotations
 import hashlib
 import json
 from collections.abc import Iterator
-from contextlib import ExitStack, contextmanager
+from contextlib import contextmanager
+from functools import partial
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import yaml
 
-from costeer.base.files import prepare_folder, read_whole, write_text
+from costeer.base.files import read_whole, write_text
 from costeer.scale.shard import WHOLE, Shard
 from costeer.study.changes import refusal
 from costeer.study.kinds import wrong_kind
-from costeer.study.locks import (
-    LOCK_FILE,
-    beginning_shard,
-    locked,
-    locked_shard,
-    shard_lock,
-)
+from costeer.study.locks import held_folder
 
 STUDY_FILE = "study.yaml"
 RECORDS = "records"
@@ -155,36 +150,9 @@ def opened_study(
         OSError: If it cannot be written.
     """
     folder = StudyFolder(path, dict(configuration), configuration_hash(configuration))
-    with ExitStack() as held:
-        if shard.total == 1:
-            prepare_folder(path, STUDY_FILE, "study", (LOCK_FILE,))
-            held.enter_context(locked(path))
-            _begin(folder, command, alone=True)
-        else:
-            held.enter_context(_begun_shard(folder, command, shard))
+    begin = partial(_begin, folder, command)
+    with held_folder(path, STUDY_FILE, "study", shard, begin):
         yield folder
-
-
-@contextmanager
-def _begun_shard(folder: StudyFolder, command: str, shard: Shard) -> Iterator[None]:
-    """Hold a shard; many begin at once, so each prepares the folder while it holds it.
-
-    Raises:
-        ValueError: As `opened_study`.
-    """
-    path = folder.path
-    locks = [shard_lock(path, Shard(n + 1, shard.total)) for n in range(shard.total)]
-    if path.is_dir() or not path.exists():
-        path.mkdir(parents=True, exist_ok=True)
-    else:
-        prepare_folder(path, STUDY_FILE, "study")  # refuses it
-    with ExitStack() as held:
-        with beginning_shard(path, shard) as alone:
-            left = (LOCK_FILE, *(each.name for each in locks))
-            prepare_folder(path, STUDY_FILE, "study", left)
-            held.enter_context(locked_shard(path, shard))
-            _begin(folder, command, alone)
-        yield
 
 
 def _begin(folder: StudyFolder, command: str, alone: bool) -> None:

@@ -10,18 +10,58 @@ from __future__ import annotations
 import os
 import re
 import socket
-from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 
 from filelock import FileLock, Timeout
 
+from costeer.base.files import prepare_folder
 from costeer.scale.shard import Shard
 
 LOCK_FILE = ".lock"
 _SHARD_LOCK = re.compile(r"\.lock-(\d+)-of-(\d+)")
 _START = 30.0
 """How long a shard waits for others that begin [s]."""
+
+
+@contextmanager
+def held_folder(
+    path: Path, mark: str, kind: str, shard: Shard, begin: Callable[[bool], object]
+) -> Iterator[None]:
+    """Hold a folder for results, or a shard of it, new or begun before.
+
+    Args:
+        path: Made if it is not there.
+        mark: Name of the file that only a folder with such results has.
+        kind: Of the results, in words.
+        shard: To hold; others may work on the other shards meanwhile.
+        begin: Writes what the folder is, or sees that it is the same; called with
+            whether no other process is at work.
+
+    Raises:
+        ValueError: If the folder holds other things, or another process works in it.
+        OSError: If it cannot be written.
+    """
+    if shard.total == 1:
+        prepare_folder(path, mark, kind, (LOCK_FILE,))
+        with locked(path):
+            begin(True)
+            yield
+        return
+    locks = [shard_lock(path, Shard(n + 1, shard.total)) for n in range(shard.total)]
+    if path.is_dir() or not path.exists():
+        path.mkdir(parents=True, exist_ok=True)
+    else:
+        prepare_folder(path, mark, kind)  # refuses it
+    with ExitStack() as held:
+        # Many begin at once, so each prepares the folder while it holds it.
+        with beginning_shard(path, shard) as alone:
+            left = (LOCK_FILE, *(each.name for each in locks))
+            prepare_folder(path, mark, kind, left)
+            held.enter_context(locked_shard(path, shard))
+            begin(alone)
+        yield
 
 
 @contextmanager

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import hashlib
 import json
-import shutil
 from collections.abc import Sequence
 from contextlib import ExitStack
 from pathlib import Path
 from typing import NamedTuple
 
-from costeer.base.files import replacing
+from costeer.scale.gathered import copied, different, refuse_missing
 from costeer.study.changes import refusal
 from costeer.study.design import Trial
 from costeer.study.folder import (
@@ -33,9 +32,6 @@ from costeer.study.run import (
     write_results,
 )
 from costeer.study.trials import believed_record, resumed_trial, study_trials
-
-_NAMED = 3
-"""Trials that a message names before it counts the others."""
 
 
 class Found(NamedTuple):
@@ -146,7 +142,7 @@ def _chosen(
             repeated.append(trial)
         records = [found for found in done if found.is_record]
         chosen[trial] = (records or done or places)[0]
-    _refuse_missing(missing, len(trials))
+    refuse_missing(list(map(told, missing)), len(trials), "trials")
     return chosen, tuple(repeated)
 
 
@@ -168,11 +164,7 @@ def _refuse_different(trial: Trial, one: Found, other: Found) -> None:
     else:
         same = _measures(one, trial) == _measures(other, trial)
     if not same:
-        raise ValueError(
-            f"{told(trial)} has different results in {one.folder.path} and "
-            f"{other.folder.path}, as of different machines; remove one of them, or "
-            "run all shards on machines of one kind"
-        )
+        raise ValueError(different(told(trial), one.folder.path, other.folder.path))
 
 
 def _measures(found: Found, trial: Trial) -> str:
@@ -188,12 +180,7 @@ def _measures(found: Found, trial: Trial) -> str:
 
 def _copy(own: StudyFolder, trial: Trial, found: Found) -> None:
     place = record_path if found.is_record else result_path
-    file = place(own.path, trial.participant, trial.condition)
-    if file.exists() and file.samefile(found.file):
-        return
-    file.parent.mkdir(exist_ok=True)
-    with replacing(file) as partial:
-        shutil.copyfile(found.file, partial)
+    copied({place(own.path, trial.participant, trial.condition): found.file})
 
 
 def _written(folder: StudyFolder, report: WriteReport | None) -> StudyOutcome:
@@ -201,20 +188,10 @@ def _written(folder: StudyFolder, report: WriteReport | None) -> StudyOutcome:
     done = trials_on_disk(folder)
     there = {each.trial for each in done}
     trials = study_trials(settings_in(folder))
-    _refuse_missing([each for each in trials if each not in there], len(trials))
+    missing = [told(each) for each in trials if each not in there]
+    refuse_missing(missing, len(trials), "trials")
     write_results(folder, done, report)
     return outcome_of(folder.path, done)
-
-
-def _refuse_missing(missing: Sequence[Trial], num_trials: int) -> None:
-    if missing:
-        more = len(missing) - _NAMED
-        named = ", ".join(map(told, missing[:_NAMED]))
-        raise ValueError(
-            f"{len(missing)} of {num_trials} trials are missing: {named}"
-            f"{f' and {more} more' if more > 0 else ''}; run their shards again, then "
-            "merge"
-        )
 
 
 def told(trial: Trial) -> str:
