@@ -32,8 +32,7 @@ calibrations = st.builds(
 
 
 def said(seed: int, num: int = 400) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
-    """Probabilities that are far apart from each other, and a truth that leans on
-    them."""
+    """Probabilities that are far apart, and a truth that leans on them."""
     rng = np.random.default_rng(seed)
     values = rng.permutation(np.linspace(-6.0, 6.0, num))
     truth = rng.random(num) < 1.0 / (1.0 + np.exp(-values))
