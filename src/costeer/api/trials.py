@@ -146,8 +146,7 @@ def _values(
     method: object,
 ) -> tuple[tuple[str, float], ...]:
     """Parameters, with the threshold that adapted weights bring along."""
-    path = None if weights is None else by_name(weights)
-    return tuple(with_threshold(given or {}, predictor, path, method).items())
+    return tuple(with_threshold(given or {}, predictor, weights, method).items())
 
 
 def _car(car: File | CarParameters) -> str | CarParameters:

@@ -15,12 +15,12 @@ NAME = "inference.threshold"
 """Of the parameter of the loop."""
 
 
-def own_threshold(predictor: object, weights: str | Path | None) -> float | None:
+def own_threshold(predictor: object, weights: object) -> float | None:
     """Threshold that a network's file was given by `costeer train --adapt`.
 
     Args:
         predictor: Name, or what else may predict.
-        weights: Its file.
+        weights: Its file; what is none is refused elsewhere.
 
     Returns:
         None if the file tells none, or is of another predictor.
@@ -29,7 +29,9 @@ def own_threshold(predictor: object, weights: str | Path | None) -> float | None
         ValueError: If the file holds no network.
         OSError: If it cannot be read.
     """
-    if weights is None or predictor != OURS or Path(weights).suffix == ".onnx":
+    if not isinstance(weights, str | Path) or predictor != OURS:
+        return None
+    if Path(weights).suffix == ".onnx":
         return None
     found = load_weights(Path(weights)).facts.get("threshold")
     return float(found) if isinstance(found, int | float) else None
@@ -38,7 +40,7 @@ def own_threshold(predictor: object, weights: str | Path | None) -> float | None
 def with_threshold(
     values: Mapping[str, float],
     predictor: object,
-    weights: str | Path | None,
+    weights: object,
     method: object = "ibhs",
 ) -> dict[str, float]:
     """Parameters of the loop, with the threshold of the weights if none was set.
