@@ -74,7 +74,7 @@ def transfer(
             "logistic-people",
             "Logistic regression, fitted to people",
             "",
-            out_of_fold(recordings, num_folds, seed, _logistic),
+            out_of_fold(recordings, num_folds, seed, fitted_to_people),
         ),
         Contender(
             "gru-people",
@@ -112,7 +112,7 @@ def _tuned(
     return partial(our_probabilities, fine_tuned(network, recordings, seed, TUNING))
 
 
-def _logistic(recordings: list[Recording]) -> Probabilities:
+def fitted_to_people(recordings: list[Recording]) -> Probabilities:
     """Logistic regression; a fourth of the drivers chooses its penalty."""
     dataset = DatasetParameters()
     scaling = feature_scaling(recordings)

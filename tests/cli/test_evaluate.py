@@ -84,6 +84,25 @@ def test_a_signal_that_is_taken_away_is_told_with_the_variant(
     assert json.loads(shown.out)["samples"] != whole["samples"]
 
 
+def test_json_says_which_data_and_how_intervals_were_made(
+    source: Path, weights: Path, capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    assert evaluate(source, "--weights", weights, "--json") == 0
+    found = json.loads(capsys.readouterr().out)
+    assert found["data"]["set"] == "files drives.csv"
+    assert found["data"]["seed"] is None
+    assert found["intervals"]["resamples"] == 1000
+    assert found["intervals"]["none_because"].startswith("3 drivers are too few")
+    assert found["interval_95"] == {}
+    assert {"log_loss"} <= found["samples"].keys()
+    other = tmp_path / "drives.csv"
+    other.write_text(source.read_text() + "\n")
+    assert evaluate(other, "--weights", weights, "--json") == 0
+    again = json.loads(capsys.readouterr().out)["data"]
+    assert again["set"] == found["data"]["set"]
+    assert again["version"] != found["data"]["version"]
+
+
 def test_an_odd_set_of_signals_is_pointed_out(
     source: Path, weights: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -24,7 +24,7 @@ from costeer.training.recordings import Recording, lacking, recording
 from tests.training.synthetic import columns, drives
 
 PARAMETERS = DEFAULTS._replace(num_resamples=200)
-RECORDINGS = drives(4, num_changes=2)
+RECORDINGS = drives(5, num_changes=2)
 ROWS = {r.features.tobytes(): r for r in RECORDINGS}
 
 

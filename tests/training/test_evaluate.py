@@ -43,7 +43,7 @@ def yaw_watcher() -> NetworkWeights:
 
 
 WATCH = partial(our_probabilities, yaw_watcher())
-RECORDINGS = drives(4)
+RECORDINGS = drives(5)
 
 
 @cache
@@ -69,7 +69,7 @@ def test_verdicts_are_those_of_the_exact_window() -> None:
 
 def test_a_good_watcher_finds_all_crossings() -> None:
     triggers = result()["triggers"]
-    assert triggers["num_crossings"] == 16.0
+    assert triggers["num_crossings"] == 20.0
     assert triggers["missed"] == 0.0
     assert 0.5 < triggers["lead_time_median"] < 3.0
     assert result()["samples"]["pr_auc"] > 0.8
@@ -84,6 +84,25 @@ def test_intervals_hold_the_value() -> None:
         assert low - 2e-3 <= values[name] <= high + 2e-3
     wanted = {"pr_auc", "f1", "lead_time_median", "lead_time_at_false_rate"}
     assert set(result()["interval_95"]) >= wanted
+
+
+def test_the_intervals_say_how_they_were_made() -> None:
+    assert result()["intervals"] == {
+        "method": "percentile bootstrap over drivers",
+        "level": 0.95,
+        "resamples": 1000,
+        "seed": 1,
+        "drivers": 5,
+    }
+
+
+def test_too_few_drivers_get_the_reason_and_no_interval() -> None:
+    few = evaluate(WATCH, RECORDINGS[:4])
+    assert few["interval_95"] == {}
+    assert few["intervals"]["none_because"] == (
+        "4 drivers are too few for an interval; it needs at least 5"
+    )
+    assert few["samples"]["log_loss"] > 0.0
 
 
 @pytest.mark.slow
@@ -117,9 +136,9 @@ def test_recordings_without_a_full_window_are_refused() -> None:
 
 
 def test_what_was_judged_is_counted() -> None:
-    assert result()["num_drivers"] == result()["num_recordings"] == 4
-    assert result()["num_crossings"] == 16
-    assert result()["hours"] == pytest.approx(4 * (5700 - 179 - 180) / 60 / 3600)
+    assert result()["num_drivers"] == result()["num_recordings"] == 5
+    assert result()["num_crossings"] == 20
+    assert result()["hours"] == pytest.approx(5 * (5700 - 179 - 180) / 60 / 3600)
     # About 20 m/s.
     assert result()["kilometres"] == pytest.approx(72.0 * result()["hours"], rel=0.05)
 

@@ -20,6 +20,7 @@ from costeer.plant.parameters import CarParameters
 from costeer.records.columns import TrialRecord
 from costeer.training import evaluate as training
 from costeer.training.recordings import Recording, recordings_of
+from costeer.training.thresholds import USUAL, own_threshold
 
 
 def population(
@@ -79,7 +80,7 @@ def evaluate(
     recordings: Recorded | File | Sequence[Recorded | File],
     *,
     weights: File | None = None,
-    threshold: float = 0.5,
+    threshold: float | None = None,
     false_per_km: float = 0.05,
     resample: bool = False,
 ) -> dict[str, Any]:
@@ -90,7 +91,8 @@ def evaluate(
             a window, shape `(180, 6)`, to a probability.
         recordings: One or several records, tables or files, 60 rows a second.
         weights: File of the predictor's numbers, .npz or .onnx.
-        threshold: Positive from this probability on [-].
+        threshold: Positive from this probability on [-]; that of the weights, else 0.5,
+            if None.
         false_per_km: Rate of false triggers at which leads are compared [1/km].
         resample: Bring tables of another rate to 60 Hz.
 
@@ -113,6 +115,9 @@ def evaluate(
         >>> never["triggers"]["true_triggers"]
         0.0
     """
+    path = None if weights is None else os.fspath(weights)
+    if threshold is None:
+        threshold = own_threshold(by_name(predictor), path) or USUAL
     if not 0.0 < threshold < 1.0 or not false_per_km > 0.0:
         raise ValueError(
             f"threshold is {threshold:g} and false_per_km {false_per_km:g}; give a "
@@ -130,6 +135,5 @@ def evaluate(
     asked = usual._replace(
         triggers=usual.triggers._replace(threshold=threshold), false_per_km=false_per_km
     )
-    path = None if weights is None else os.fspath(weights)
     judged = any_predictor(by_name(predictor), path)
     return training.evaluate(judged.probabilities, stretches, asked)

@@ -31,6 +31,7 @@ from costeer.scenarios.definition import Scenario
 from costeer.scenarios.reading import chosen
 from costeer.study.configuration import StudySettings
 from costeer.study.run import Scale, StudyOutcome, full_report, run_study
+from costeer.training.thresholds import with_threshold
 
 if TYPE_CHECKING:
     from pandas import DataFrame
@@ -133,13 +134,23 @@ def simulate(
         "method": by_name(method),
         "predictor": by_name(predictor),
         "weights": None if weights is None else os.fspath(weights),
-        "parameters": tuple((parameters or {}).items()),
+        "parameters": _values(parameters, predictor, weights, method),
         "mistakes": (mistakes,) if isinstance(mistakes, str) else tuple(mistakes),
         "trigger_times": tuple(trigger_times),
     }
     return simulate_trial(
         TrialSetup(**{n: given[n] for n in TrialSetup._fields}), engine
     )
+
+
+def _values(
+    given: Mapping[str, float] | None,
+    predictor: object,
+    weights: File | None,
+    method: object,
+) -> tuple[tuple[str, float], ...]:
+    """Parameters, with the threshold that adapted weights bring along."""
+    return tuple(with_threshold(given or {}, predictor, weights, method).items())
 
 
 def _car(car: File | CarParameters) -> str | CarParameters:
@@ -232,7 +243,7 @@ def study(
         "predictor": by_name(predictor),
         "weights": "" if weights is None else by_name(weights),
         "drivers": _several(drivers, driver),
-        "parameters": tuple((parameters or {}).items()),
+        "parameters": _values(parameters, predictor, weights, method),
         "mistakes": (mistakes,) if isinstance(mistakes, str) else tuple(mistakes),
     }
     settings = StudySettings(**{name: given[name] for name in StudySettings._fields})

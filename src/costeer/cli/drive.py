@@ -114,7 +114,9 @@ def drive(
         events=events,
         predictor=predictor,
         weights=plug_ins.weights_path(weights),
-        parameters=plug_ins.chosen_values(parameters, assignments),
+        parameters=plug_ins.values_with_threshold(
+            parameters, assignments, plug_ins.Reader(predictor, weights, method)
+        ),
     )
     chosen = chosen_wheel(wheel)
     setup = DriveSetup(

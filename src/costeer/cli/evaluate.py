@@ -119,9 +119,12 @@ def evaluate(
         ),
     ] = False,
     threshold: Annotated[
-        float,
-        typer.Option(help="Positive from this probability on.", callback=fraction()),
-    ] = 0.5,
+        float | None,
+        typer.Option(
+            help="Positive from this probability on; that of the weights, else 0.5.",
+            callback=fraction(),
+        ),
+    ] = None,
     false_per_km: Annotated[
         float,
         typer.Option(
@@ -164,7 +167,9 @@ def evaluate(
     if out is not None:
         parts.prepare_folder(out)
     parameters = DEFAULTS._replace(
-        triggers=DEFAULTS.triggers._replace(threshold=threshold),
+        triggers=DEFAULTS.triggers._replace(
+            threshold=parts.chosen_threshold(threshold, predictor, weights)
+        ),
         false_per_km=false_per_km,
     )
     recordings = parts.read_source(source)
@@ -198,7 +203,7 @@ def print_evaluation(result: dict[str, Any], title: str) -> None:
         f"{title}: {num} driver{'s' * (num != 1)}, {result['hours']:.2f} h, "
         f"{result['kilometres']:.1f} km, threshold {result['threshold']:g}"
     )
-    intervals = result["interval_95"] if num > 1 else {}
+    intervals = result["interval_95"]
     rows = [
         [label, _shown(name, result[part].get(name)), _interval(intervals.get(name))]
         for part, lines in (("samples", _SAMPLES), ("triggers", _TRIGGERS))
@@ -213,6 +218,8 @@ def print_evaluation(result: dict[str, Any], title: str) -> None:
     ]
     print_table(["score", "value", "95 % over drivers"], rows, title=heading)
     typer.echo(_at_rate_told(result, intervals.get("lead_time_at_false_rate")))
+    if why := result.get("intervals", {}).get("none_because"):
+        typer.echo(f"No intervals: {why}.")
 
 
 def _at_rate_told(result: dict[str, Any], ends: list[float] | None) -> str:

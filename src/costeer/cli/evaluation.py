@@ -140,6 +140,56 @@ def check_chosen(chosen: Chosen) -> None:
         )
 
 
+def chosen_threshold(
+    given: float | None, predictor: str, weights: Path | None
+) -> float:
+    """The threshold that was asked for, else that of the weights, else 0.5.
+
+    Raises:
+        ValueError: If the file holds no network.
+        OSError: If it cannot be read.
+    """
+    from costeer.training.thresholds import USUAL, own_threshold
+
+    if given is not None:
+        return given
+    own = own_threshold(predictor, weights)
+    return USUAL if own is None else own
+
+
+def data_told(source: Source) -> dict[str, Any]:
+    """Which data these are: set, version, and the seed of simulated drivers.
+
+    Raises:
+        OSError: If a file cannot be read.
+    """
+    from importlib.metadata import version
+
+    from costeer.drivers.population import POPULATION_VERSION
+    from costeer.training.datasets.catalogue import dataset_version, files_version
+
+    if source.simulate is not None:
+        state = f"population {POPULATION_VERSION}"
+    elif source.dataset is not None:
+        state = dataset_version(source.dataset, _folder(source))
+    else:
+        state = files_version(source.files)
+    seed = None
+    if source.simulate is not None:
+        seed = 1 if source.seed is None else source.seed
+    return {
+        "set": source.dataset or _told(source),
+        "version": state,
+        "seed": seed,
+        "costeer_version": version("costeer"),
+    }
+
+
+def _folder(source: Source) -> Path:
+    """That holds the sets."""
+    return source.data or Path(os.environ.get("COSTEER_DATA", "data"))
+
+
 def read_source(source: Source) -> list[Recording]:
     """Read or simulate the recordings.
 
@@ -162,8 +212,7 @@ def read_source(source: Source) -> list[Recording]:
     if source.dataset is not None:
         from costeer.training.datasets.catalogue import read_dataset
 
-        folder = source.data or Path(os.environ.get("COSTEER_DATA", "data"))
-        return read_dataset(source.dataset, folder)
+        return read_dataset(source.dataset, _folder(source))
     from costeer.training.recordings import read_recordings
 
     way = way_of(source.told)
@@ -195,7 +244,10 @@ def judge(
     weights = None if chosen.weights is None else str(chosen.weights)
     judged = any_predictor(chosen.predictor, weights)
     assessment = assess(judged, seen, _asked(chosen), parameters)
-    where = {} if source.simulate is None else {"scenario": scenario_told(source)}
+    where: dict[str, Any] = {}
+    if source.simulate is not None:
+        where["scenario"] = scenario_told(source)
+    where["data"] = data_told(source)
     facts = {**where, "missing_signals": lacks, **assessment_facts(assessment)}
     there = f", scenario {scenario_told(source)}" if source.scenario else ""
     if chosen.predictor != OURS:

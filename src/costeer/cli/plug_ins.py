@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, NamedTuple
 
 import typer
 
@@ -129,6 +129,37 @@ def chosen_values(file: Path | None, words: list[str] | None) -> Values:
 
     values = {} if file is None else read_values(file)
     return tuple({**values, **parse_assignments(words or [])}.items())
+
+
+class Reader(NamedTuple):
+    """What reads the intention, as the options of a command name it."""
+
+    predictor: str
+    weights: Path | None
+    method: str
+
+
+def values_with_threshold(
+    file: Path | None, words: list[str] | None, reader: Reader
+) -> Values:
+    """As `chosen_values`, with the threshold that adapted weights bring along.
+
+    Raises:
+        ValueError: If something sets nothing, or the weights are none.
+        OSError: If a file cannot be read.
+    """
+    values = chosen_values(file, words)
+    if reader.weights is None:
+        return values
+    from costeer.training.thresholds import NAME, with_threshold
+
+    found = with_threshold(dict(values), *reader)
+    if len(found) > len(values):
+        note(
+            f"costeer: {NAME} is {found[NAME]:.4g}, as {reader.weights} says; --set "
+            "changes it"
+        )
+    return tuple(found.items())
 
 
 def weights_path(weights: Path | None) -> str | None:

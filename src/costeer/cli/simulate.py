@@ -83,7 +83,9 @@ def simulate(
         intention=intention,
         predictor=predictor,
         weights=plug_ins.weights_path(weights),
-        parameters=plug_ins.chosen_values(parameters, assignments),
+        parameters=plug_ins.values_with_threshold(
+            parameters, assignments, plug_ins.Reader(predictor, weights, method)
+        ),
         trigger_times=tuple(trigger_at or ()),
         events=events,
         initial_offset=initial_offset,

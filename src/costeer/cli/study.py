@@ -99,7 +99,9 @@ def study(
             predictor=predictor,
             weights=plug_ins.weights_path(weights) or "",
             drivers=tuple(driver or ()),
-            parameters=plug_ins.chosen_values(parameters, assignments),
+            parameters=plug_ins.values_with_threshold(
+                parameters, assignments, plug_ins.Reader(predictor, weights, method)
+            ),
             mistakes=tuple(mistake or ()),
         )
     )

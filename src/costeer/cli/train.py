@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, NamedTuple
 
 import typer
 
+from costeer.cli.adapt import SHIPPED, Adapting, adapt_to_people, start_network
 from costeer.cli.reading import (
     AS_FOUND,
     Told,
@@ -15,7 +16,7 @@ from costeer.cli.reading import (
     refuse_without_files,
     way_of,
 )
-from costeer.cli.validate import at_least, in_range, one_of
+from costeer.cli.validate import at_least, in_range, one_of, positive
 
 if TYPE_CHECKING:
     from costeer.training.recordings import Recording
@@ -88,8 +89,27 @@ def train(
         ),
     ] = "network",
     start: Annotated[
+        str | None,
+        typer.Option(
+            metavar="shipped|FILE",
+            help="Go on from these weights: fine-tune to the recordings.",
+        ),
+    ] = None,
+    adapt: Annotated[
         Path | None,
-        typer.Option(help="Go on from these weights: fine-tune to the recordings."),
+        typer.Option(
+            metavar="FOLDER",
+            help="Adapt to the people of these recordings, 10 min or more: fine-tune, "
+            "calibrate, set the threshold, judge on drivers left out.",
+        ),
+    ] = None,
+    false_per_km: Annotated[
+        float | None,
+        typer.Option(
+            help="With --adapt: false triggers a kilometre that the threshold keeps "
+            "to; 0.05.",
+            callback=positive("per km"),
+        ),
     ] = None,
     seed: Annotated[
         int,
@@ -104,7 +124,10 @@ def train(
     ] = None,
     steps: Annotated[
         int | None,
-        typer.Option(help="Training steps at most, per size.", callback=at_least(1)),
+        typer.Option(
+            help="Training steps at most, per size; 0 with --adapt only calibrates.",
+            callback=at_least(0),
+        ),
     ] = None,
     jobs: Annotated[
         int | None, typer.Option(help="Threads to simulate with.", callback=at_least(1))
@@ -121,7 +144,16 @@ def train(
         costeer train --simulate 60 --out out/intention.npz
         costeer train --simulate 60 --fit baselines --out out/baselines.npz
         costeer train drives.csv --start out/intention.npz --out out/tuned.npz
+        costeer train --start shipped --adapt recordings --out out/ours.npz
     """
+    if adapt is not None:
+        _refuse_beside_adapt(files, simulate, dataset, fit, hidden)
+        wanted = Adapting(adapt, start or SHIPPED, seed, steps, false_per_km, resample)
+        _check_place(out)
+        adapt_to_people(wanted, told, out)
+        return
+    if false_per_km is not None or steps == 0:
+        raise ValueError("--false-per-km and --steps 0 are for --adapt FOLDER")
     threads = jobs or os.cpu_count() or 1
     source = Source(files or [], simulate, seed, threads, dataset, data, resample, told)
     _check_source(source, start is not None)
@@ -136,7 +168,7 @@ def train(
 
 
 def _check_together(
-    fit: str, start: Path | None, hidden: int | None, steps: int | None
+    fit: str, start: str | None, hidden: int | None, steps: int | None
 ) -> None:
     """Refuse options that have nothing to say to each other."""
     if start is not None and (hidden or fit != "network"):
@@ -146,6 +178,29 @@ def _check_together(
     if fit == "baselines" and (hidden or steps):
         raise ValueError(
             "--fit baselines chooses its own sizes: leave out --hidden and --steps"
+        )
+
+
+def _refuse_beside_adapt(
+    files: list[Path] | None,
+    simulate: int,
+    dataset: str | None,
+    fit: str,
+    hidden: int | None,
+) -> None:
+    """Refuse other recordings, and what only a new network has."""
+    given = {
+        "files": files,
+        "--simulate": simulate,
+        "--dataset": dataset,
+        "--fit": fit != "network",
+        "--hidden": hidden,
+    }
+    others = [name for name, value in given.items() if value]
+    if others:
+        raise ValueError(
+            f"--adapt FOLDER says what to learn from and goes on with a network as it "
+            f"is; leave out {', '.join(others)}"
         )
 
 
@@ -241,13 +296,13 @@ def _fit_baselines(source: Source, out: Path) -> None:
     print_table(["predictor", "variants"], rows, title="Fitted")
 
 
-def _fine_tune(source: Source, start: Path, steps: int | None, out: Path) -> None:
+def _fine_tune(source: Source, start: str, steps: int | None, out: Path) -> None:
     """Let a network learn from all recordings for some steps."""
     from costeer.cli.console import note
-    from costeer.intention.weights import intention_network, load_weights, save_weights
+    from costeer.intention.weights import intention_network, save_weights
     from costeer.training.tuning import DEFAULTS, fine_tuned
 
-    network = load_weights(start)
+    network = start_network(start)
     parameters = DEFAULTS._replace(num_steps=steps) if steps else DEFAULTS
     recordings = _recordings(source)
     weights = fine_tuned(network.weights, recordings, source.seed, parameters)

@@ -23,6 +23,10 @@ Times = NDArray[np.int64]
 Drawn = dict[str, Numbers]
 """Value of each score in each resampling, `(resample,)`."""
 
+FEWEST_DRIVERS = 5
+"""With fewer no interval is told: resampling so few says more of chance than of
+drivers. Source: assumed; five can be drawn in 126 different ways, four in 35."""
+
 AT_RATE = "lead_time_at_false_rate"
 _LEADS = {"lead_time_p10": 10, "lead_time_median": 50, "lead_time_p90": 90}
 
@@ -34,6 +38,32 @@ def resamplings(
     rng = np.random.default_rng(seed)
     share = np.full(num_drivers, 1.0 / num_drivers)
     return np.asarray(rng.multinomial(num_drivers, share, num_resamples))
+
+
+def intervals_told(
+    num_drivers: int, num_resamples: int, seed: int, unit: str = "drivers"
+) -> dict[str, str | float]:
+    """How the intervals beside it were made, or why there are none.
+
+    Args:
+        num_drivers: That are resampled.
+        num_resamples: Of the bootstrap.
+        seed: Of the bootstrap.
+        unit: What stands for a driver.
+    """
+    told: dict[str, str | float] = {
+        "method": f"percentile bootstrap over {unit}",
+        "level": 0.95,
+        "resamples": num_resamples,
+        "seed": seed,
+        unit: num_drivers,
+    }
+    if num_drivers < FEWEST_DRIVERS:
+        told["none_because"] = (
+            f"{num_drivers} {unit} are too few for an interval; it needs at least "
+            f"{FEWEST_DRIVERS}"
+        )
+    return told
 
 
 def drawn_samples(

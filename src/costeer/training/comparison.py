@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from costeer.intention.features import full_windows
 from costeer.intention.predictors.interface import Predictor, lacking
-from costeer.training.bootstrap import AT_RATE, interval_95
+from costeer.training.bootstrap import AT_RATE, FEWEST_DRIVERS, interval_95
 from costeer.training.evaluate import (
     DEFAULTS,
     EvaluationParameters,
@@ -61,7 +61,7 @@ class Difference(NamedTuple):
         value: In the unit of the score.
         low: Lower end of the 95 % interval over drivers, NaN if unknown.
         high: Upper end.
-        verdict: "better", "worse", "tie", or "unknown" with fewer than two drivers.
+        verdict: "better", "worse", "tie", or "unknown" with too few drivers.
     """
 
     value: float
@@ -236,7 +236,7 @@ def _difference(
     value: float, drawn: NDArray[np.float64], num_drivers: int
 ) -> Difference:
     ends = interval_95(drawn)
-    if num_drivers < 2 or ends is None or not np.isfinite(value):
+    if num_drivers < FEWEST_DRIVERS or ends is None or not np.isfinite(value):
         return Difference(value, float("nan"), float("nan"), UNKNOWN)
     low, high = ends
     verdict = BETTER if low > 0.0 else WORSE if high < 0.0 else TIE

@@ -149,11 +149,20 @@ def shown(recordings: Sequence[Recording]) -> list[Recording]:
     return [*recordings, *(view for r in whole for view in wide_views(r))]
 
 
-def windows(recordings: Sequence[Recording], parameters: DatasetParameters) -> Windows:
+def windows(
+    recordings: Sequence[Recording],
+    parameters: DatasetParameters,
+    needs_both: bool = True,
+) -> Windows:
     """Windows that end where the strides say.
 
+    Args:
+        recordings: At least one.
+        parameters: Which samples end a window.
+        needs_both: Whether both classes must be there, as in a training.
+
     Raises:
-        ValueError: If there is none, or all are of one class.
+        ValueError: If they must, and are not.
     """
     ends, positive, weight, offset = [], [], [], 0
     for one in recordings:
@@ -163,7 +172,7 @@ def windows(recordings: Sequence[Recording], parameters: DatasetParameters) -> W
         weight.append(weights)
         offset += len(one.features)
     truth = np.concatenate(positive).astype(np.float32)
-    if not 0 < truth.sum() < len(truth):
+    if needs_both and not 0 < truth.sum() < len(truth):
         raise ValueError(
             f"{len(truth)} training windows hold {int(truth.sum())} that precede a "
             "crossing; both kinds are needed"

@@ -193,7 +193,10 @@ def judgement(
         "false_per_km_allowed": parameters.false_per_km,
         "at_false_rate": _at_rate(operating, parameters),
         "between_drivers": _spread(drivers, counts, parameters.triggers.threshold),
-        "interval_95": _intervals(drawn),
+        "intervals": bootstrap.intervals_told(
+            len(drivers), parameters.num_resamples, parameters.seed
+        ),
+        "interval_95": _intervals(drawn, len(drivers)),
     }
     return Judgement(plain(found), drivers, operating, drawn)
 
@@ -266,8 +269,10 @@ def _drawn(
     }
 
 
-def _intervals(drawn: bootstrap.Drawn) -> dict[str, list[float]]:
-    """95 % intervals of the scores that have one."""
+def _intervals(drawn: bootstrap.Drawn, num_drivers: int) -> dict[str, list[float]]:
+    """95 % intervals of the scores that have one; none of too few drivers."""
+    if num_drivers < bootstrap.FEWEST_DRIVERS:
+        return {}
     found = {name: bootstrap.interval_95(values) for name, values in drawn.items()}
     return {name: list(ends) for name, ends in found.items() if ends is not None}
 

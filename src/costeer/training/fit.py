@@ -9,7 +9,7 @@ are kept, and the training stops when it has not fallen for a while.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from functools import partial
+from functools import cache, partial
 from typing import Any, NamedTuple
 
 import jax
@@ -110,6 +110,20 @@ def weighted_loss(
     return jnp.sum(weight * each) / jnp.sum(weight)
 
 
+@cache
+def _rule(parameters: FitParameters) -> tuple[optax.GradientTransformation, Any]:
+    """How weights go down the slope, and a compiled step; fits alike share it."""
+    rule = optimiser(parameters)
+
+    @jax.jit
+    def update(weights: TrainedWeights, memory: Any, batch: Any) -> Any:
+        loss, slope = jax.value_and_grad(weighted_loss)(weights, *batch)
+        change, memory = rule.update(slope, memory, weights)
+        return optax.apply_updates(weights, change), memory, loss
+
+    return rule, update
+
+
 def descend(
     weights: TrainedWeights,
     data: Windows,
@@ -118,15 +132,8 @@ def descend(
     parameters: FitParameters,
 ) -> Iterator[tuple[TrainedWeights, jax.Array]]:
     """Weights and loss after each step."""
-    rule = optimiser(parameters)
+    rule, update = _rule(parameters)
     memory = rule.init(weights)
-
-    @jax.jit
-    def update(weights: TrainedWeights, memory: Any, batch: Any) -> Any:
-        loss, slope = jax.value_and_grad(weighted_loss)(weights, *batch)
-        change, memory = rule.update(slope, memory, weights)
-        return optax.apply_updates(weights, change), memory, loss
-
     drawn = batches(data, scale, parameters.batch_size, seed, parameters.augmentation)
     for batch in drawn:
         weights, memory, loss = update(weights, memory, tuple(batch))

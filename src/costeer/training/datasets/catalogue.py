@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+import hashlib
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import TypeAlias
 
@@ -36,6 +37,29 @@ FILES: Mapping[str, tuple[str, ...]] = {
     "ngsim_i80_following": ngsim_i80_following.FILES,
 }
 """What must be in the folder of each set; `.gz` files may be unpacked."""
+
+
+def files_version(paths: Sequence[Path]) -> str:
+    """What tells one state of some files from another, by the bytes of all.
+
+    Raises:
+        OSError: If one cannot be read.
+    """
+    digest = hashlib.sha256()
+    for path in paths:
+        with path.open("rb") as file:
+            digest.update(hashlib.file_digest(file, "sha256").digest())
+    return f"sha256:{digest.hexdigest()[:16]}"
+
+
+def dataset_version(name: str, folder: Path) -> str:
+    """Of the files of a set, as they are in `folder`.
+
+    Raises:
+        OSError: If one cannot be read.
+    """
+    there = [stored(folder / name / file) for file in FILES[name]]
+    return files_version([each for each in there if each is not None])
 
 
 def read_dataset(name: str, folder: Path) -> list[Recording]:
