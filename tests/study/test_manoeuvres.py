@@ -15,6 +15,7 @@ from costeer.study.manoeuvres import (
     overshoot,
     peak_steering_angle,
     rms,
+    settling,
     speed_measures,
     steering_velocity_rms,
 )
@@ -69,6 +70,55 @@ def test_duration_is_given_for_other_thresholds_too() -> None:
         expected = duration_above_yaw(6.0, radians(degrees))
         # Interpolation between 60 Hz samples.
         assert found[name] == pytest.approx(expected, abs=2e-3)
+
+
+@pytest.mark.parametrize("direction", [LEFT, RIGHT])
+def test_a_quintic_settles_when_its_yaw_falls_to_a_third_of_a_degree(
+    direction: int,
+) -> None:
+    offset = 0.0 if direction == RIGHT else -3.5
+    columns = changes([(10.0, 6.0, direction)], offset=offset)
+    found = settling(columns, only_change(columns))
+    calm, published = (duration_above_yaw(6.0, radians(d)) for d in (0.3, 0.5))
+    assert found["settled_time"] == pytest.approx(13.0 + calm / 2, abs=2e-3)
+    expected = (calm + published) / 2
+    assert found["duration_until_settled"] == pytest.approx(expected, abs=2e-3)
+
+
+def swinging(until: float) -> Columns:
+    """A change from 10 to 16 s, then a yaw of 0.4 deg to and fro, 1 s each way."""
+    columns = changes([(10.0, 6.0, RIGHT)])
+    time = columns["time"]
+    after = (time > 16.0) & (time < until)
+    swing = radians(0.4) * np.sin(pi * (time - 16.0))
+    return columns | {"yaw_angle": np.where(after, swing, columns["yaw_angle"])}
+
+
+def test_who_swings_has_ended_by_yaw_and_settles_later() -> None:
+    still, swings = changes([(10.0, 6.0, RIGHT)]), swinging(20.0)
+    change = only_change(swings)
+    assert change.end_time == only_change(still).end_time
+    # The last half swing falls below 0.3 deg where sin = 3/4.
+    last = 20.0 - np.arcsin(0.75) / pi
+    assert settling(swings, change)["settled_time"] == pytest.approx(last, abs=2e-3)
+
+
+def test_two_seconds_must_be_in_the_record() -> None:
+    columns = changes([(10.0, 6.0, RIGHT)])
+    change, whole = only_change(columns), settling(columns, only_change(columns))
+    for margin, known in ((0.05, True), (-0.05, False)):
+        rows = columns["time"] <= whole["settled_time"] + 2.0 + margin
+        short = {name: values[rows] for name, values in columns.items()}
+        assert isnan(settling(short, change)["settled_time"]) != known
+
+
+def test_who_goes_back_before_settling_has_no_time() -> None:
+    columns = changes([(10.0, 6.0, RIGHT), (16.5, 6.0, LEFT)])
+    segments = segment(columns)
+    assert isinstance(segments, Segments)
+    first, second = segments.changes
+    assert isnan(settling(columns, first)["settled_time"])
+    assert settling(columns, second)["settled_time"] > second.end_time
 
 
 def test_a_slow_change_has_no_duration_above_one_degree() -> None:

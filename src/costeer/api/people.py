@@ -20,7 +20,7 @@ from costeer.plant.parameters import CarParameters
 from costeer.records.columns import TrialRecord
 from costeer.training import evaluate as training
 from costeer.training.recordings import Recording, recordings_of
-from costeer.training.thresholds import USUAL, own_threshold
+from costeer.training.thresholds import chosen_threshold
 
 
 def population(
@@ -116,8 +116,7 @@ def evaluate(
         0.0
     """
     path = None if weights is None else os.fspath(weights)
-    if threshold is None:
-        threshold = own_threshold(by_name(predictor), path) or USUAL
+    threshold = chosen_threshold(threshold, by_name(predictor), path)
     if not 0.0 < threshold < 1.0 or not false_per_km > 0.0:
         raise ValueError(
             f"threshold is {threshold:g} and false_per_km {false_per_km:g}; give a "

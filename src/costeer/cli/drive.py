@@ -96,8 +96,6 @@ def drive(
     from costeer.runtime.setup import DriveSetup
     from costeer.runtime.stream import check_free
     from costeer.web.drive import DriveOnPages, PageOptions
-    from costeer.web.security import access_for
-    from costeer.web.serving import listening
 
     if record is not None:
         check_free(record)
@@ -129,9 +127,18 @@ def drive(
         participant=participant,
     )
     options = PageOptions(input=chosen.input, show_signals=signals)
-    access = access_for(host, port)
-    listening(host, port).close()  # before anything is started
+    access = _access(host, port)  # before anything is started
     _run_to_its_end(DriveOnPages(setup, record, options), access, browser, lsl)
+
+
+def _access(host: str, port: int) -> Access:
+    """Who may open the page; refused if it could not be served."""
+    from costeer.web.security import access_for
+    from costeer.web.serving import listening
+
+    access = access_for(host, port)
+    listening(host, port).close()
+    return access
 
 
 def _run_to_its_end(

@@ -157,6 +157,7 @@ def evaluate(
     """
     from costeer.cli import evaluation as parts
     from costeer.training.evaluate import DEFAULTS
+    from costeer.training.thresholds import chosen_threshold
 
     source = parts.Source(
         files or [], simulate, seed, dataset, data, resample, told, scenario, cluster
@@ -168,7 +169,7 @@ def evaluate(
         parts.prepare_folder(out)
     parameters = DEFAULTS._replace(
         triggers=DEFAULTS.triggers._replace(
-            threshold=parts.chosen_threshold(threshold, predictor, weights)
+            threshold=chosen_threshold(threshold, predictor, weights)
         ),
         false_per_km=false_per_km,
     )

@@ -140,23 +140,6 @@ def check_chosen(chosen: Chosen) -> None:
         )
 
 
-def chosen_threshold(
-    given: float | None, predictor: str, weights: Path | None
-) -> float:
-    """The threshold that was asked for, else that of the weights, else 0.5.
-
-    Raises:
-        ValueError: If the file holds no network.
-        OSError: If it cannot be read.
-    """
-    from costeer.training.thresholds import USUAL, own_threshold
-
-    if given is not None:
-        return given
-    own = own_threshold(predictor, weights)
-    return USUAL if own is None else own
-
-
 def data_told(source: Source) -> dict[str, Any]:
     """Which data these are: set, version, and the seed of simulated drivers.
 

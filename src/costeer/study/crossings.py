@@ -59,7 +59,7 @@ def _crossings_of(time: Signal, offset: Signal, left: int) -> list[Crossing]:
     leftward = [bool(offset[row + 1] >= 0.0) for row in rows]
     return [
         Crossing(
-            time=_instant(time, offset, int(row), 0.0),
+            time=passing(time, offset, int(row), 0.0),
             direction=LEFT if to_left else RIGHT,
             lane=left if to_left else left - 1,
         )
@@ -67,7 +67,7 @@ def _crossings_of(time: Signal, offset: Signal, left: int) -> list[Crossing]:
     ]
 
 
-def _instant(time: Signal, signal: Signal, row: int, level: float) -> float:
+def passing(time: Signal, signal: Signal, row: int, level: float) -> float:
     """When a signal passes a level between a row and the next [s]."""
     before, after = signal[row] - level, signal[row + 1] - level
     share = before / (before - after)
@@ -95,9 +95,9 @@ def excursion(
     place = int(np.searchsorted(below, np.searchsorted(time, instant)))
     start, end = -inf, inf
     if place > 0:
-        start = _instant(time, signal, int(below[place - 1]), threshold)
+        start = passing(time, signal, int(below[place - 1]), threshold)
     if place < below.size:
-        end = _instant(time, signal, int(below[place]) - 1, threshold)
+        end = passing(time, signal, int(below[place]) - 1, threshold)
     return start, end
 
 

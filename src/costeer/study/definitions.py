@@ -52,6 +52,10 @@ class MeasureParameters(NamedTuple):
             Source: assumed, as for the lock of the trigger.
         settled_duration: A car is settled if it stays so long straight, within
             `yaw_threshold`, and near the centre [s]. Source: assumed, as above.
+        straight_yaw: From where it stays within this the heading is settled [rad].
+            Source: assumed, 0.3 deg, what a car's yaw swings by in lane keeping.
+        straight_duration: For so long it must stay [s]. Source: assumed, longer than
+            the swing of a car that comes to rest in its lane.
         any_lane: 1 if lane keeping counts in every lane, about its centre; 0 if, on two
             lanes, in that one alone which is not for overtaking [-]. Source: the paper,
             whose drivers keep left.
@@ -78,6 +82,8 @@ class MeasureParameters(NamedTuple):
     episode_duration: float = 10.0
     settled_offset: float = 0.3
     settled_duration: float = 0.5
+    straight_yaw: float = radians(0.3)
+    straight_duration: float = 2.0
     any_lane: float = 0.0
     following_headway: float = 6.0
 

@@ -161,6 +161,13 @@ _LANE_CHANGES = (
         "detection_lead_time", "first trigger to crossing; 0 if missed", "s", _FROM_0
     ),
     Entry("num_inconsistencies", "that began from start to end", *_COUNT),
+    Entry(
+        "settled_time",
+        "first time after the crossing from which yaw stays within 0.3 deg for 2 s",
+        "s",
+        _FROM_0,
+    ),
+    Entry("duration_until_settled", "from start to settled_time", "s", _FROM_0),
 )
 
 _TRIGGERS = (

@@ -5,16 +5,19 @@ from math import nan, radians
 import numpy as np
 
 from costeer.records.columns import LANE_CHANGING
-from costeer.study.crossings import excursion, within
+from costeer.study.crossings import excursion, passing, within
 from costeer.study.definitions import (
     DEFAULTS,
     Columns,
     MeasureParameters,
     Signal,
     missing,
+    runs,
 )
 from costeer.study.lanes import centre, lanes
 from costeer.study.segments import LaneChange
+
+_TOLERANCE = 1e-9  # s; sums of control steps are not exact
 
 # Beside the threshold of the parameters, so that its influence can be reported.
 SENSITIVITY_THRESHOLDS = {
@@ -112,6 +115,36 @@ def duration_sensitivity(columns: Columns, change: LaneChange) -> dict[str, floa
     return {
         name: nan if span is None else _finite(span[1] - span[0])
         for name, span in spans.items()
+    }
+
+
+def settling(
+    columns: Columns, change: LaneChange, parameters: MeasureParameters = DEFAULTS
+) -> dict[str, float]:
+    """When the heading begins to stay along the lane, and how long that took.
+
+    Args:
+        columns: Of the trial.
+        change: Which lane change.
+        parameters: How straight, and for how long.
+
+    Returns:
+        `settled_time` [s] and `duration_until_settled` [s], from the published start;
+        NaN if the record stops before, or the car has left the new lane by then.
+    """
+    time, yaw = columns["time"], np.abs(columns["yaw_angle"])
+    level, instant = parameters.straight_yaw, nan
+    after = int(np.searchsorted(time, change.crossing_time))
+    for part in runs(yaw[after:] <= level):
+        first, last = after + part.start, after + part.stop - 1
+        entered = passing(time, yaw, first - 1, level) if first > after else time[first]
+        if time[last] - entered >= parameters.straight_duration - _TOLERANCE:
+            lane = int(lanes(columns["lateral_position"][first], parameters))
+            instant = float(entered) if lane == change.lane else nan
+            break
+    return {
+        "settled_time": instant,
+        "duration_until_settled": instant - change.start_time,
     }
 
 

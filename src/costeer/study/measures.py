@@ -16,6 +16,7 @@ from costeer.study.manoeuvres import (
     is_assisted,
     overshoot,
     peak_steering_angle,
+    settling,
     speed_measures,
     steering_velocity_rms,
 )
@@ -77,6 +78,7 @@ def lane_change_rows(
             **_identity(record),
             **_change_row(trial, change),
             **_judged(change, found, disputes),
+            **settling(trial.columns, change, trial.parameters),
         }
         for change in trial.segments.changes
     ]

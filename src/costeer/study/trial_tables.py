@@ -47,6 +47,8 @@ LANE_CHANGE_COLUMNS = (
     "duration_one_degree",
     "detection_lead_time",
     "num_inconsistencies",
+    "settled_time",
+    "duration_until_settled",
 )
 """Head of `lane_changes.csv`, for a study in which nobody changed lanes."""
 

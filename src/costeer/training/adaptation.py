@@ -70,7 +70,7 @@ class AdaptationParameters(NamedTuple):
         triggers: Debounce; its threshold is not used.
         false_per_km: Rate of false triggers that the threshold keeps to [1/km].
             Source: assumed, one false trigger in 20 km.
-        calibrate: Whether temperature and bias are fitted.
+        calibrate: Whether temperature and bias are fitted [-]. Source: assumed.
         inner_folds: Parts by which steps, calibration and threshold are chosen [-].
             Source: assumed.
         outer_folds: Parts by which the result is judged, at most [-]. Source: assumed;

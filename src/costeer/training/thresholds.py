@@ -37,6 +37,19 @@ def own_threshold(predictor: object, weights: object) -> float | None:
     return float(found) if isinstance(found, int | float) else None
 
 
+def chosen_threshold(given: float | None, predictor: object, weights: object) -> float:
+    """The threshold that was asked for, else that of the weights, else 0.5.
+
+    Raises:
+        ValueError: If the file holds no network.
+        OSError: If it cannot be read.
+    """
+    if given is not None:
+        return given
+    own = own_threshold(predictor, weights)
+    return USUAL if own is None else own
+
+
 def with_threshold(
     values: Mapping[str, float],
     predictor: object,

@@ -61,6 +61,7 @@ def durations_table(material: StudyMaterial) -> Table:
         "duration_one_degree": "Yaw 1 deg",
         "duration_by_speed": "Lateral speed 0.1 m/s",
         "onset_to_crossing": "Onset to crossing",
+        "duration_until_settled": "Until settled",
     }
     changes = material.lane_changes
     known = {name: title for name, title in columns.items() if name in changes}
@@ -72,7 +73,8 @@ def durations_table(material: StudyMaterial) -> Table:
         name="durations",
         title="Lane change duration by definition [s]",
         note="Median over lane changes, below it the 10th and 90th percentile. The "
-        "tests use the first column; onset is a lateral speed of 0.1 m/s.",
+        "tests use the first column; onset is a lateral speed of 0.1 m/s. Until "
+        "settled: from the start by yaw until the yaw stays within 0.3 deg for 2 s.",
         header=("Condition", *known.values()),
         rows=tuple(rows),
     )

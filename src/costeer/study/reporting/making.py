@@ -101,6 +101,10 @@ def thresholds_table() -> Table:
     """Return the thresholds of the measures."""
     rows = (
         ("A lane change starts and ends at a yaw of", f"{_deg('yaw_threshold')} deg"),
+        (
+            "The heading is settled when yaw stays within",
+            f"{_deg('straight_yaw')} deg for {DEFAULTS.straight_duration:g} s",
+        ),
         ("Lane keeping stays clear of it by", f"{DEFAULTS.lane_change_margin:g} s"),
         (
             "Who crosses back within",
