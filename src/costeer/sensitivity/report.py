@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
+from textwrap import fill
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -12,6 +13,7 @@ from numpy.typing import NDArray
 from costeer.base.files import write_text
 from costeer.pages.exhibit import Exhibit, not_drawn
 from costeer.pages.frame import Section, picture, render_page, write_figures
+from costeer.pages.numerals import plural
 from costeer.pages.style import (
     FAINT,
     FULL_WIDTH_MM,
@@ -64,11 +66,12 @@ def write_report(folder: Path, settings: Settings, outcomes: Sequence[Outcome]) 
     words = {
         "title": "Sensitivity",
         "heading": "Sensitivity of the intention-based guidance",
-        "subtitle": f"costeer, {settings.drivers} pilot drivers",
+        "subtitle": f"costeer, {plural(settings.drivers, 'pilot driver')}",
         "looked_at": [
             f"{len(drawn)} samples of {len(FACTORS)} factors (Saltelli's scheme from "
-            f"{settings.base}), each driven by the same {settings.drivers} pilot "
-            f"drivers over {settings.length / 1000.0:g} km with the same noise."
+            f"{settings.base}), each driven by the same "
+            f"{plural(settings.drivers, 'pilot driver')} over "
+            f"{settings.length / 1000.0:g} km with the same noise."
         ],
         "outcomes": _outcomes(found),
         "caution": (
@@ -131,7 +134,12 @@ def _shares(found: Indices) -> Exhibit:
     num_rows = -(-len(known) // 3)
     figure = new_figure(FULL_WIDTH_MM, 12.0 + 55.0 * num_rows)
     margins = Margins(
-        left=29.0, right=3.0, top=8.0, bottom=8.0, between_columns=4.0, between_rows=9.0
+        left=29.0,
+        right=3.0,
+        top=9.0,
+        bottom=8.0,
+        between_columns=4.0,
+        between_rows=13.0,
     )
     grid = panels(figure, num_rows, 3, margins)
     places = np.arange(len(FACTORS))[::-1]
@@ -141,7 +149,7 @@ def _shares(found: Indices) -> Exhibit:
             axes.set_visible(False)
             continue
         _bars(axes, places, found[known[number].name])
-        axes.set_title(known[number].title)
+        axes.set_title(fill(known[number].title, 28))
         axes.set_yticks(places, [f.name for f in FACTORS] if number % 3 == 0 else [])
     every[0].legend(loc="lower right")
     return Exhibit(
