@@ -15,7 +15,6 @@ from costeer.controller.realtime import (
     ControlInput,
     control_step,
     packed_controller,
-    unpacked_signals,
 )
 from costeer.controller.signals import Request
 from costeer.controller.step import ControllerParameters
@@ -82,16 +81,6 @@ def test_compiled_and_plain_step_between_arrays_agree() -> None:
             pack(memory.given, given)
             run(*memory, DT)
         np.testing.assert_allclose(here.signals, there.signals, 1e-12, 1e-15)
-
-
-def test_packed_signals_read_as_the_named_tuple() -> None:
-    memory = packed_controller(PARAMETERS, LEFT_LANE)
-    pack(memory.given, inputs()[0])
-    control_step(*memory, DT)
-    signals = unpacked_signals(memory.signals)
-    place = SIGNAL_NAMES.index("guidance.instructed_torque")
-    assert signals.guidance.instructed_torque == memory.signals[place] != 0.0
-    assert signals.intention is False
 
 
 def test_names_tell_every_packed_number() -> None:

@@ -24,7 +24,7 @@ class ConsistencyParameters(NamedTuple):
         hold_time: A verdict that changes stays at least this long [s]. Source:
             paper, none; a literal Table III can chatter when a torque crosses zero.
         hands_on_threshold: Least driver torque that disagrees, measured and beyond
-            what relaxed arms give [N·m]; 0 gives Table III as printed. Source:
+            what relaxed arms give; 0 gives Table III as printed [N·m]. Source:
             assumed, above a torque sensor's noise; without it hands that rest on the
             rim keep the gain at 0 for ever.
     """

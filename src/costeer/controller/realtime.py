@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from costeer.base.array import Real
 from costeer.base.entry import entry
 from costeer.base.packing import leaf_names, pack, packed, packed_size, unpack
-from costeer.controller.signals import Assistance, Request
+from costeer.controller.signals import Request
 from costeer.controller.step import ControllerParameters, initial_state, step
 from costeer.sensing.measurement import Measurement
 
@@ -75,11 +75,6 @@ def packed_controller(parameters: ControllerParameters, lane: Real) -> PackedCon
         given=packed(_INPUT),
         signals=np.zeros(packed_size(_SIGNALS)),
     )
-
-
-def unpacked_signals(signals: NDArray[np.float64]) -> Assistance:
-    """The signals of a step as the named tuple that Python code reads."""
-    return unpack(_SIGNALS, signals)
 
 
 @entry
