@@ -18,8 +18,9 @@ from typing import NamedTuple
 import numpy as np
 
 from costeer.drivers.driver import DriverParameters
+from costeer.drivers.population import SECOND
 from costeer.identification.estimate import information
-from costeer.identification.fit import DriverFit, fit_driver
+from costeer.identification.fit import USUAL, DriverFit, fit_driver
 from costeer.identification.likelihood import Evidence
 from costeer.identification.model import wheel_motion
 from costeer.identification.parameters import STEERING, Parameter, value_of
@@ -60,6 +61,7 @@ def manual(seed: int, participant: int) -> TrialSetup:
     return TrialSetup(
         seed=seed,
         participant=participant,
+        driver=SECOND.name,
         condition="manual",
         method="manual",
         intention="off",
@@ -96,7 +98,7 @@ def evidence_of(record: TrialRecord) -> Evidence:
     """What the likelihood looks at."""
     drive = drive_of(record)
     rows = lane_keeping(drive, changes(drive))
-    return Evidence(drive, wheel_motion(drive, DriverParameters().arm), rows)
+    return Evidence(drive, wheel_motion(drive, USUAL.arm), rows)
 
 
 def told(setup: TrialSetup, added: str) -> tuple[float, float, str, float]:

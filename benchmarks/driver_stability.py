@@ -4,10 +4,10 @@
 
 Prints, for 1000 drivers of one seed in the default car at 70 km/h and for a smaller
 sample in all cars at 50 to 110 km/h: least damping ratio of the linear loop with its
-frequency and its driver, longest settling of a 0.5 m offset, largest ratio of
-successive swings, amplitude of the hunting that dry friction leaves without noise, and
-least distance of a wheel from the road's outer lines in a manual trial. Exit code 1
-if a driver swings or leaves the road.
+frequency and its driver, longest settling of an offset of 0.5 m and largest ratio of
+successive swings, both beyond what the driver lets go, amplitude of the hunting without
+noise, and least distance of a wheel from the road's outer lines in a manual trial. Exit
+code 1 if a driver swings or leaves the road.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from costeer.validation.stability import (
     oscillates,
 )
 
-SEED = 101
+SEED = 131
 NUM_DRIVERS = 1000
 NUM_ELSEWHERE = 30
 

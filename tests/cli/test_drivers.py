@@ -25,7 +25,41 @@ def test_without_flags_it_lists_what_differs(
     assert "5 virtual drivers, seed 4" in shown
     assert "arm.stiffness" in shown
     assert "stiffness +0.60" in shown  # what goes together
-    assert f"population {POPULATION_VERSION}" in shown
+    assert f"population {POPULATION_VERSION} (virtual)" in shown
+
+
+def test_another_population_is_listed_by_its_name(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    few = ("--participants", "5", "--json")
+    durations = {}
+    for name, version, domain in (
+        ("virtual", "3", "simulator"),
+        ("virtual-traffic", "3", "traffic"),
+        ("virtual-2", "2", "traffic"),
+    ):
+        assert drivers(*few, "--population", name) == 0
+        told = json.loads(capsys.readouterr().out)
+        assert (told["population"], told["name"]) == (version, name)
+        assert told["domain"] == domain
+        durations[name] = [d["decision.change_duration"] for d in told["drivers"]]
+    assert durations["virtual-traffic"] == durations["virtual-2"]
+    assert sum(durations["virtual"]) < sum(durations["virtual-traffic"])
+    assert drivers("--participants", "2", "--population", "virtual-2") == 0
+    shown = capsys.readouterr().out
+    assert "population 2 (virtual-2)" in shown
+    assert "tolerance.band" not in shown
+
+
+def test_a_validation_of_another_population_has_the_ranges_of_its_domain(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    asked = ("--validate", "--participants", "1", "--population", "virtual-traffic")
+    assert drivers(*asked) == 0
+    shown = capsys.readouterr().out
+    assert "population 3 (virtual-traffic), domain traffic" in shown
+    assert "5 to 6.3" in shown
+    assert "4.6 to 5.6" not in shown
 
 
 @pytest.mark.slow
@@ -43,6 +77,7 @@ def test_json_lists_each_driver(capsys: pytest.CaptureFixture[str]) -> None:
     told = json.loads(capsys.readouterr().out)
     assert [driver["participant"] for driver in told["drivers"]] == [1, 2, 3]
     assert told["population"] == POPULATION_VERSION
+    assert (told["name"], told["domain"]) == ("virtual", "simulator")
     strongest = told["correlations"][0]
     assert strongest["first"] == "arm_damping"
     assert strongest["correlation"] == pytest.approx(0.42)
@@ -144,6 +179,11 @@ REFUSED = {
     "name that ends in .svg": ("--plot", "drivers.png"),
     "0 is not allowed; give from 1": ("--participants", "0"),
     "-1 is not allowed; give at least 0": ("--seed", "-1"),
+    "'virtual-trafic' is not known (did you mean virtual-traffic": (
+        *("--population", "virtual-trafic"),
+    ),
+    "population 'people' is not known": ("--validate", "--population", "people"),
+    "leave --population out": ("--threshold", "--population", "virtual-2"),
     "speed is 100 m/s (360 km/h); give a number from 12": ("--speed", "100"),
 }
 

@@ -7,7 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from costeer.validation.manual import TARGETS
+from costeer.drivers.population import POPULATIONS
+from costeer.validation.targets import TARGETS
 
 PAGE = Path(__file__).parents[2] / "docs" / "drivers.md"
 
@@ -18,9 +19,15 @@ def test_example_of_the_page_runs(capsys: pytest.CaptureFixture[str]) -> None:
     assert re.search(r"N·m/rad, reliance 0\.\d\d\nplans", capsys.readouterr().out)
 
 
-def test_the_page_shows_every_target_with_its_range() -> None:
+@pytest.mark.parametrize("domain", TARGETS)
+def test_the_page_shows_every_target_with_its_range(domain: str) -> None:
     text = PAGE.read_text("utf-8")
-    for target in TARGETS:
-        line = next(x for x in text.splitlines() if x.startswith(f"| {target.name} |"))
-        assert f"{target.quantity} [{target.unit}]" in line
-        assert f"{target.low:g} to {target.high:g}" in line
+    for target in TARGETS[domain]:
+        row = f"| {target.name} | {target.quantity} [{target.unit}] | "
+        assert f"{row}{target.low:g} to {target.high:g} |" in text
+
+
+def test_the_page_names_every_population() -> None:
+    text = PAGE.read_text("utf-8")
+    for population in POPULATIONS.values():
+        assert f"| `{population.name}` | {population.version} |" in text

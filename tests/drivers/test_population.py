@@ -69,6 +69,7 @@ REACTION = "evasion.reaction_time"
 
 LOG_NORMAL = {
     "tracking.wander_deviation": "wander_deviation_spread",
+    "tolerance.band": "band_spread",
     "decision.change_duration": "duration_spread",
     "decision.headway": "headway_spread",
     "decision.return_headway": "headway_spread",
@@ -154,7 +155,7 @@ def test_every_trait_moves_the_driver_a_little(trait: str) -> None:
 
 
 def test_the_population_says_its_version() -> None:
-    assert POPULATION_VERSION == "2"
+    assert POPULATION_VERSION == "3"
 
 
 def test_the_population_before_is_still_there() -> None:

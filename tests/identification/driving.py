@@ -1,4 +1,4 @@
-"""Manual trials of known drivers, simulated once."""
+"""Manual trials of known drivers, simulated once: of population 2, which is fitted."""
 
 from __future__ import annotations
 
@@ -33,6 +33,7 @@ def manual_setup(participant: int, length: float = 8000.0) -> TrialSetup:
     return TrialSetup(
         participant=participant,
         seed=FRESH_SEED,
+        driver="virtual-2",
         condition="manual",
         method="manual",
         intention="off",

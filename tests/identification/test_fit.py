@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from functools import cache
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -11,6 +12,7 @@ import pytest
 from costeer.identification import steering
 from costeer.identification.fit import WHITE, DriverFit, fit_driver
 from costeer.identification.parameters import STEERING, Estimate, value_of
+from costeer.loop.inputs import read_driver, write_driver
 from costeer.records.columns import TrialRecord
 from tests.identification.driving import (
     cut,
@@ -105,6 +107,18 @@ def test_the_fitted_driver_has_the_estimates_and_else_the_usual_values() -> None
     for estimate in fit.estimates:
         assert value_of(fit.driver, estimate.name) == estimate.value
     assert value_of(fit.driver, "reliance.reliance") == 0.5
+
+
+def test_the_fitted_driver_is_the_linear_one_and_a_file_keeps_it(
+    tmp_path: Path,
+) -> None:
+    driver = fit_of(1, SHORT).driver
+    # Whatever makes a driver of population 3 intermittent is off.
+    assert driver.tolerance.band == driver.correcting.evidence_rate == 0.0
+    assert driver.vision.signal_noise == driver.learning.share == 0.0
+    path = tmp_path / "driver.yaml"
+    write_driver(path, driver, {"fitted_to": "a drive"})
+    assert read_driver(path) == driver
 
 
 @pytest.mark.slow

@@ -8,17 +8,18 @@ from functools import cache
 
 import pytest
 
+from costeer.drivers.population import SECOND
 from costeer.drivers.traits import FACTORS
 from costeer.validation.drawn import drawn_drivers
 from costeer.validation.drawn_figure import (
-    Population,
+    Drawn,
     parameters_description,
     population_parameters_svg,
 )
 
 
-def population(num_drivers: int) -> Population:
-    return Population(5, drawn_drivers(5, num_drivers, 20.0))
+def population(num_drivers: int) -> Drawn:
+    return Drawn(5, drawn_drivers(5, num_drivers, 20.0))
 
 
 @cache
@@ -39,6 +40,15 @@ def test_the_figure_is_as_wide_as_two_columns_of_a_page() -> None:
 
 def test_a_single_driver_can_be_drawn() -> None:
     assert svg(1).startswith("<?xml")
+
+
+def test_a_population_without_a_band_is_drawn_without_it() -> None:
+    before = Drawn(5, drawn_drivers(5, 2, 20.0, SECOND), SECOND)
+    shown = population_parameters_svg(before)
+    assert "Population 2 (virtual-2), seed 5" in shown
+    assert ">tolerance: band<" not in shown
+    assert ">tolerance: band<" in svg(6)
+    assert "Population 3 (virtual), seed 5" in svg(6)
 
 
 @pytest.mark.parametrize("factor", FACTORS, ids=lambda factor: factor.name)

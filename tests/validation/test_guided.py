@@ -13,7 +13,13 @@ from costeer.loop.trial import idle_network
 from costeer.methods.ibhs import IBHS
 from costeer.plant.parameters import CARS
 from costeer.records.row import ROW_COLUMNS
-from costeer.validation.driver_loop import STATES, quiet, smooth, transition
+from costeer.validation.driver_loop import (
+    STATES,
+    linear_core,
+    quiet,
+    smooth,
+    transition,
+)
 from costeer.validation.guided import (
     CONSTANT,
     guided_drivers,
@@ -30,9 +36,8 @@ PLACE = ROW_COLUMNS.index("lateral_position")
 @pytest.mark.parametrize("car", CARS)
 def test_the_linear_loop_goes_the_way_of_the_simulation(car: str, speed: float) -> None:
     drawn = participant_driver(101, 3, speed)
-    driver = drawn._replace(
+    driver = linear_core(drawn)._replace(
         longitudinal=drawn.longitudinal._replace(preferred_speed=speed),
-        reliance=drawn.reliance._replace(reliance=0.0),
         tracking=drawn.tracking._replace(lane_bias=0.0),
     )
     parameters = smooth(without_compensation(guided_parameters(car, speed)))

@@ -7,10 +7,10 @@ from functools import cache
 
 import pytest
 
+from costeer.drivers.population import POPULATIONS, SIMULATOR, TRAFFIC, Population
 from costeer.validation import manual
 from costeer.validation.manual import (
     PLANNED_CHANGES,
-    TARGETS,
     ManualDriving,
     TargetCheck,
     compare,
@@ -18,14 +18,15 @@ from costeer.validation.manual import (
     missed_by,
 )
 from costeer.validation.overview import overview
+from costeer.validation.targets import TARGETS
 
-FRESH_SEED = 101
-"""No driver was ever tuned on this seed; 7, 11, 12 and 13 were looked at."""
+FRESH_SEED = 131
+"""No driver was ever tuned on this seed; 21 and 22 were looked at."""
 
 
 @cache
-def driving(num_drivers: int) -> ManualDriving:
-    return drive_population(FRESH_SEED, num_drivers)
+def driving(num_drivers: int, name: str = "virtual") -> ManualDriving:
+    return drive_population(FRESH_SEED, num_drivers, population=POPULATIONS[name])
 
 
 def values(num_drivers: int) -> dict[str, float]:
@@ -58,10 +59,42 @@ def test_a_dozen_drivers_drive_much_like_people(name: str) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("target", TARGETS, ids=lambda target: target.name)
-def test_200_drivers_whom_nobody_tuned_meet_the_target(target: object) -> None:
-    (found,) = [c for c in compare(driving(200)) if c.target == target]
+@pytest.mark.timeout(900)  # the first of each population drives all of it
+@pytest.mark.parametrize("place", range(12), ids=lambda place: f"M{place + 1}")
+@pytest.mark.parametrize("name", ["virtual", "virtual-traffic"])
+def test_200_drivers_whom_nobody_tuned_meet_the_target(name: str, place: int) -> None:
+    found = compare(driving(200, name))[place]
+    assert found.target == TARGETS[POPULATIONS[name].domain][place]
     assert found.met, f"{found.value} is not in the human range"
+
+
+def test_lane_changes_in_a_simulator_are_held_to_other_ranges() -> None:
+    in_traffic = {each.name: each for each in TARGETS[TRAFFIC]}
+    moved = [t.name for t in TARGETS[SIMULATOR] if t != in_traffic[t.name]]
+    assert moved == ["M4", "M5", "M9", "M10"]
+    here = {each.name: each for each in TARGETS[SIMULATOR]}
+    # 5.1 s within a tenth; NGSIM's other ranges at 5.1 s for its 5.5 s.
+    assert (here["M4"].low, here["M4"].high) == pytest.approx((4.6, 5.6), abs=0.011)
+    for name, factor in (("M9", 5.5 / 5.1), ("M10", 5.1 / 5.5)):
+        there = in_traffic[name]
+        scaled = (factor * there.low, factor * there.high)
+        assert (here[name].low, here[name].high) == pytest.approx(scaled, rel=0.01)
+    for name in moved:
+        assert here[name].source.startswith("assumed")
+
+
+@pytest.mark.parametrize("population", POPULATIONS.values(), ids=lambda p: p.name)
+def test_a_population_is_held_to_the_targets_of_its_domain(
+    population: Population,
+) -> None:
+    found = compare(ManualDriving([], [], 0, population))
+    assert tuple(each.target for each in found) == TARGETS[population.domain]
+
+
+def test_another_population_drives_otherwise_and_says_which_it_is() -> None:
+    ours, road = (driving(2, name) for name in ("virtual", "virtual-traffic"))
+    assert road.population.name == "virtual-traffic"
+    assert repr(ours.changes) != repr(road.changes)
 
 
 @pytest.mark.slow
@@ -88,7 +121,7 @@ def test_progress_counts_every_trial() -> None:
 
 
 def test_a_trial_that_fails_is_told_as_it_is(monkeypatch: pytest.MonkeyPatch) -> None:
-    def interrupted(seed: int, participant: int, condition: str) -> None:
+    def interrupted(*_: object) -> None:
         raise KeyboardInterrupt
 
     monkeypatch.setattr(manual, "manual_trial", interrupted)
@@ -97,7 +130,7 @@ def test_a_trial_that_fails_is_told_as_it_is(monkeypatch: pytest.MonkeyPatch) ->
 
 
 def test_a_miss_is_the_distance_to_the_range() -> None:
-    target = TARGETS[0]
+    target = TARGETS[TRAFFIC][0]
     assert missed_by(TargetCheck(target, 0.20, True)) == 0.0
     assert missed_by(TargetCheck(target, 0.28, False)) == pytest.approx(0.03)
     assert missed_by(TargetCheck(target, 0.10, False)) == pytest.approx(0.05)

@@ -11,7 +11,8 @@ import pytest
 from numpy.typing import NDArray
 
 from costeer.drivers.driver import DriverParameters
-from costeer.drivers.population import participant_driver
+from costeer.drivers.population import SECOND, participant_driver
+from costeer.drivers.tolerance import gathered
 from costeer.loop.noise import driver_noise
 from costeer.loop.parameters import DT, LoopParameters
 from costeer.loop.rollout import rollout
@@ -24,6 +25,7 @@ from costeer.records.row import ROW_COLUMNS
 from costeer.validation.driver_loop import (
     STATES,
     least_damped,
+    linear_core,
     poles,
     smooth,
     transition,
@@ -37,6 +39,7 @@ from costeer.validation.stability import (
     edge_margin,
     every_stability,
     leaves_road,
+    let_go,
     manual_setup,
     offset_run,
     oscillates,
@@ -45,7 +48,7 @@ from costeer.validation.stability import (
     swings,
 )
 
-FRESH_SEED = 101
+FRESH_SEED = 131
 """No driver was ever tuned on this seed."""
 
 TIME = np.arange(3600) * DT
@@ -79,7 +82,7 @@ def sluggish() -> DriverParameters:
 def test_the_linear_loop_goes_the_way_of_the_simulation(car: str, speed: float) -> None:
     driver = participant_driver(PILOT_SEED, 3, speed)
     pedals = driver.longitudinal._replace(preferred_speed=speed)  # linear at one speed
-    driver = driver._replace(longitudinal=pedals)
+    driver = linear_core(driver._replace(longitudinal=pedals))
     parameters = loop_of(driver, car, speed)
     (matrix,) = transition(parameters, [driver])
     simulated = offset_run(smooth(parameters), 0.01)
@@ -141,6 +144,15 @@ def test_an_oscillation_that_lasts_has_ratio_one_and_never_settles() -> None:
     assert settling_time(signal) == math.inf
 
 
+def test_swings_within_what_is_let_go_do_not_count() -> None:
+    signal = 0.5 * np.exp(-TIME) + 0.15 * np.cos(TIME)
+    assert swing_ratio(signal) > 0.9
+    assert settling_time(signal) == math.inf
+    assert swing_ratio(signal, 0.2) == 0.0
+    assert settling_time(signal, 0.2) < 3.0
+    assert swing_ratio(0.5 * np.cos(TIME), 0.2) > 0.9  # beyond it they do
+
+
 def test_ripples_of_millimetres_are_no_swings() -> None:
     assert swing_ratio(0.5 * np.exp(-TIME) + 0.001 * np.sin(5.0 * TIME)) == 0.0
 
@@ -182,9 +194,45 @@ def test_a_sluggish_driver_is_seen_by_both_looks() -> None:
     matrices = transition(parameters, [sluggish()])
     assert np.abs(np.linalg.eigvals(matrices)).max() > 1.0
     assert least_damped(poles(matrices))[0] < 0.0
-    signal = offset_run(smooth(parameters))
-    assert swing_ratio(signal) > 0.8
-    assert settling_time(signal) == math.inf
+    room = let_go(sluggish(), speed)
+    signal = offset_run(smooth(parameters), 0.5 + room)
+    assert swing_ratio(signal, room) > 0.8
+    assert settling_time(signal, room) == math.inf
+
+
+@pytest.mark.parametrize("speed", SPEEDS)
+def test_what_is_let_go_is_where_the_evidence_is_never_complete(speed: float) -> None:
+    driver = participant_driver(PILOT_SEED, 5, speed)
+    own, near = driver.tolerance, speed * driver.vision.near_time
+    for share, corrects in ((0.49, False), (0.51, True)):  # half of it: no drift
+        beside = share * let_go(driver, speed)
+        asked = driver.vision.near_gain / speed * math.atan(beside / near)
+        evidence = 0.0
+        for _ in range(round(1000.0 / DT)):
+            evidence = gathered(own, evidence, asked, DT)
+        assert (evidence == 1.0) is corrects
+    assert let_go(participant_driver(PILOT_SEED, 5, speed, SECOND), speed) == 0.0
+
+
+@pytest.mark.parametrize("speed", SPEEDS)
+def test_who_lets_go_drifts_about_the_aim_and_no_farther(speed: float) -> None:
+    for number in range(1, 7):
+        driver = participant_driver(PILOT_SEED, number, speed)
+        parameters, room = loop_of(driver, "default", speed), let_go(driver, speed)
+        signal = offset_run(smooth(parameters), 0.5 + room)
+        late = np.abs(signal[round(30.0 / DT) :])
+        # It does not come to rest at the aim, does not grow, and stays in the lane.
+        assert 0.2 * room < late.max() < room + 0.02
+        assert swing_ratio(signal, room) == 0.0
+        assert late.max() < 1.75 - CARS["default"].width / 2.0
+
+
+def test_without_tolerance_nobody_swings_a_second_time() -> None:
+    for number in range(1, 7):
+        driver = participant_driver(PILOT_SEED, number, 20.0, SECOND)
+        signal = offset_run(smooth(loop_of(driver, "default", 20.0)))
+        assert swing_ratio(signal) == 0.0
+        assert settling_time(signal) < 4.0
 
 
 def test_each_fault_is_told() -> None:

@@ -97,13 +97,13 @@ def _recording(path: Path, told: Told) -> tuple[TrialRecord, list[str]]:
 
 def _write(out: Path, fit: DriverFit, path: Path) -> None:
     """Write the driver for `--driver`, with what the fit was made of."""
-    from costeer.drivers.population import POPULATION_VERSION
+    from costeer.drivers.population import SECOND
     from costeer.loop.inputs import write_driver
 
     out.parent.mkdir(parents=True, exist_ok=True)
     about = {
         "fitted_to": path.name,
-        "population": POPULATION_VERSION,
+        "population": SECOND.version,
         "lane_keeping": fit.lane_keeping,
         "estimated": [each.name for each in fit.estimates],
     }
@@ -187,11 +187,11 @@ def _notes(fit: DriverFit) -> list[str]:
 def _print_json(path: Path, fit: DriverFit, checks: list[Check]) -> None:
     import json
 
-    from costeer.drivers.population import POPULATION_VERSION
+    from costeer.drivers.population import SECOND
 
     answer = {
         "file": str(path),
-        "population": POPULATION_VERSION,
+        "population": SECOND.version,
         "lane_keeping": fit.lane_keeping,
         "num_changes": fit.num_changes,
         "torque_noise": fit.torque_noise,

@@ -13,6 +13,7 @@ import typer
 from costeer.cli.console import note, print_table, progress
 
 if TYPE_CHECKING:
+    from costeer.drivers.population import Population
     from costeer.validation.manual import ManualDriving, TargetCheck
     from costeer.validation.overview import Quantity
 
@@ -26,6 +27,7 @@ class Asked(NamedTuple):
         jobs: Trials at a time; None for as many as there are processors.
         plot: Where to draw; None for nowhere.
         as_json: Whether to print JSON.
+        population: Name of the one that is drawn from.
     """
 
     seed: int
@@ -33,6 +35,7 @@ class Asked(NamedTuple):
     jobs: int | None
     plot: Path | None
     as_json: bool
+    population: str = "virtual"
 
 
 def show_drawn(asked: Asked, speed: float) -> None:
@@ -42,33 +45,39 @@ def show_drawn(asked: Asked, speed: float) -> None:
         asked: Which population.
         speed: Suggested [m/s].
     """
-    from costeer.drivers.population import POPULATION_VERSION
     from costeer.loop.scenario import TrialSetup, check_setup
     from costeer.validation.drawn import drawn_drivers, trait_pairs
+    from costeer.validation.populations import population_named, population_told
 
+    population = population_named(asked.population)
     check_setup(TrialSetup(seed=asked.seed, speed=speed))
     refuse_bad_plot(asked.plot)
-    drawn = drawn_drivers(asked.seed, asked.number, speed)
+    drawn = drawn_drivers(asked.seed, asked.number, speed, population)
     if asked.plot is not None:
-        from costeer.validation.drawn_figure import (
-            Population,
-            population_parameters_svg,
-        )
+        from costeer.validation.drawn_figure import Drawn, population_parameters_svg
 
-        _write_plot(
-            asked.plot, population_parameters_svg(Population(asked.seed, drawn))
-        )
+        shown = Drawn(asked.seed, drawn, population)
+        _write_plot(asked.plot, population_parameters_svg(shown))
     if asked.as_json:
         answer = {
             "seed": asked.seed,
-            "population": POPULATION_VERSION,
+            **_which(population),
             "drivers": drawn,
             "correlations": [pair._asdict() for pair in trait_pairs()],
         }
         _print_json(answer)
         return
     _print_drawn(asked, drawn)
-    typer.echo(f"population {POPULATION_VERSION}")
+    typer.echo(population_told(population))
+
+
+def _which(population: Population) -> dict[str, str]:
+    """What JSON says of a population."""
+    return {
+        "population": population.version,
+        "name": population.name,
+        "domain": population.domain,
+    }
 
 
 def _print_drawn(asked: Asked, drawn: list[dict[str, float]]) -> None:
@@ -106,7 +115,9 @@ def show_validation(asked: Asked, out: Path | None, data: Path | None) -> None:
     """
     from costeer.validation.manual import compare
     from costeer.validation.overview import overview
+    from costeer.validation.populations import population_named, population_told
 
+    population_named(asked.population)  # refused before anything is driven
     refuse_bad_plot(asked.plot)
     driving = _driven(asked) if out is None else _reported(asked, out, data)
     if asked.plot is not None:
@@ -118,6 +129,8 @@ def show_validation(asked: Asked, out: Path | None, data: Path | None) -> None:
         _print_json(_driving_as_json(asked.seed, driving, comparisons, quantities))
         return
     _print_targets(asked.seed, asked.number, comparisons)
+    domain = driving.population.domain
+    typer.echo(f"{population_told(driving.population)}, domain {domain}")
     print_table(
         ["also", "value"],
         [[f"{q.quantity} [{q.unit}]", _short(q.value)] for q in quantities],
@@ -127,10 +140,15 @@ def show_validation(asked: Asked, out: Path | None, data: Path | None) -> None:
 def _driven(asked: Asked) -> ManualDriving:
     from costeer.scale.jobs import default_jobs
     from costeer.validation.manual import drive_population
+    from costeer.validation.populations import population_named
 
     with progress("manual trials", asked.number) as advance:
         return drive_population(
-            asked.seed, asked.number, asked.jobs or default_jobs(), advance
+            asked.seed,
+            asked.number,
+            asked.jobs or default_jobs(),
+            advance,
+            population=population_named(asked.population),
         )
 
 
@@ -138,12 +156,19 @@ def _reported(asked: Asked, out: Path, data: Path | None) -> ManualDriving:
     """Simulate all that the report stands on, and write it."""
     from costeer.scale.jobs import default_jobs
     from costeer.validation.people.folder import data_folder
+    from costeer.validation.populations import population_named
     from costeer.validation.reporting.evidence import Plan, gather
     from costeer.validation.reporting.report import prepare, write_validation
 
     folder = data_folder(data)
     prepare(out)
-    plan = Plan(asked.seed, asked.number, asked.jobs or default_jobs(), folder)
+    plan = Plan(
+        asked.seed,
+        asked.number,
+        asked.jobs or default_jobs(),
+        folder,
+        population_named(asked.population),
+    )
     evidence = gather(plan, progress)
     note(f"wrote {write_validation(out, evidence)}")
     return evidence.driving
@@ -205,13 +230,12 @@ def _driving_as_json(
     comparisons: list[TargetCheck],
     quantities: list[Quantity],
 ) -> dict[str, object]:
-    from costeer.drivers.population import POPULATION_VERSION
     from costeer.validation.manual import missed_by
 
     return {
         "seed": seed,
         "participants": len(driving.trials),
-        "population": POPULATION_VERSION,
+        **_which(driving.population),
         "targets": [
             {
                 **c.target._asdict(),

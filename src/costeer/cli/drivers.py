@@ -14,6 +14,7 @@ from costeer.cli.validate import at_least, in_range
 DRIVERS, PILOTS = 200, 30
 """How many drivers are asked for if not said: of a population, and as pilots."""
 
+_POPULATION = "virtual"
 SPEED = 70 / 3.6
 """Suggested speed if not said [m/s]."""
 
@@ -52,12 +53,22 @@ _TASKS = {
                 "--seed",
                 "--jobs",
                 "--json",
+                "--population",
             }
         ),
     ),
     _LIST: _Task(
         "lists and plots a population",
-        frozenset({"--plot", "--participants", "--seed", "--speed", "--json"}),
+        frozenset(
+            {
+                "--plot",
+                "--participants",
+                "--seed",
+                "--speed",
+                "--json",
+                "--population",
+            }
+        ),
     ),
 }
 
@@ -91,6 +102,13 @@ def drivers(
     plot: Annotated[
         Path | None,
         typer.Option(help="Draw into FILE.svg: the population, its driving, or a fit."),
+    ] = None,
+    population: Annotated[
+        str | None,
+        typer.Option(
+            metavar="NAME",
+            help="Drawn from: virtual, virtual-traffic, virtual-2; virtual.",
+        ),
     ] = None,
     participants: Annotated[
         int | None,
@@ -126,6 +144,7 @@ def drivers(
     Example:
         costeer drivers --participants 12 --seed 1 --plot out/population.svg
         costeer drivers --validate --out out/validation
+        costeer drivers --validate --population virtual-traffic
         costeer drivers --fit out/study/records/01-manual.parquet
         costeer drivers --threshold
     """
@@ -137,6 +156,7 @@ def drivers(
         "--data": data,
         "--car": car,
         "--plot": plot,
+        "--population": population,
         "--participants": participants,
         "--seed": seed,
         "--speed": speed,
@@ -154,7 +174,14 @@ def drivers(
     from costeer.cli import driver_tables as tables
 
     number = participants or (PILOTS if threshold else DRIVERS)
-    asked = tables.Asked(1 if seed is None else seed, number, jobs, plot, json)
+    asked = tables.Asked(
+        seed=1 if seed is None else seed,
+        number=number,
+        jobs=jobs,
+        plot=plot,
+        as_json=json,
+        population=population or _POPULATION,
+    )
     if threshold:
         tables.show_threshold(asked)
     elif validate:

@@ -1,4 +1,9 @@
-"""A driver fitted to one recording of manual driving."""
+"""A driver fitted to one recording of manual driving.
+
+What is fitted is the linear driver of population 2, who follows what is seen all the
+time: of this one the likelihood is exact. Of a driver who lets things go (population 3)
+it is the linear core.
+"""
 
 from __future__ import annotations
 
@@ -8,6 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from costeer.drivers.driver import DriverParameters
+from costeer.drivers.population import SECOND
 from costeer.identification.direct import direct_estimates
 from costeer.identification.likelihood import Evidence, predicted
 from costeer.identification.model import wheel_motion
@@ -33,6 +39,8 @@ from costeer.records.columns import TrialRecord
 
 SHORTEST_FIT = 60.0
 """Lane keeping that a fit needs in all [s]: about ten swings of the wander."""
+USUAL = SECOND.usual
+"""The driver whose values are kept where the recording does not tell."""
 WHITE = 0.05
 """Autocorrelation of prediction errors that is no matter however long a recording is
 [-]. Source: assumed, above what drivers of the model show in 8 km, 0.01 to 0.03."""
@@ -45,7 +53,7 @@ class DriverFit(NamedTuple):
     """What a recording tells of its driver.
 
     Attributes:
-        driver: With the estimates; what is not identified has its usual value.
+        driver: With the estimates; what is not identified is as in `USUAL`.
         estimates: Of the identifiable set, with 95 % intervals.
         not_identified: What this recording, or any, does not tell, and why.
         lane_keeping: How long the stretches of lane keeping are together [s].
@@ -90,8 +98,8 @@ def fit_driver(
     found = changes(drive)
     rows = lane_keeping(drive, found)
     _check_length(drive, rows)
-    evidence = Evidence(drive, wheel_motion(drive, DriverParameters().arm), rows)
-    steering = fit_steering(DriverParameters(), evidence)
+    evidence = Evidence(drive, wheel_motion(drive, USUAL.arm), rows)
+    steering = fit_steering(USUAL, evidence)
     direct = direct_estimates(drive, found)
     errors, whiteness, white_limit = _residuals(steering.driver, steering.evidence)
     return DriverFit(

@@ -9,8 +9,7 @@ from numpy.typing import NDArray
 
 from costeer.base.array import Real
 from costeer.base.packing import leaf_names, packed
-from costeer.drivers.driver import DriverParameters
-from costeer.drivers.population import PopulationParameters, participant_driver
+from costeer.drivers.population import USUAL, Population, participant_driver
 from costeer.drivers.traits import Traits, correlation_matrix, drawn_traits
 
 UNITS = {
@@ -24,6 +23,7 @@ UNITS = {
     "reliance.cocontraction": "-",
     "tracking.wander_deviation": "m",
     "tracking.lane_bias": "m",
+    "tolerance.band": "rad",
     "decision.headway": "s",
     "decision.return_headway": "s",
     "decision.change_duration": "s",
@@ -63,6 +63,7 @@ DISTRIBUTIONS = {
     "reliance.cocontraction": Distribution(LOG_NORMAL, "cocontraction_spread"),
     "tracking.wander_deviation": Distribution(LOG_NORMAL, "wander_deviation_spread"),
     "tracking.lane_bias": Distribution(NORMAL, "lane_bias_spread"),
+    "tolerance.band": Distribution(LOG_NORMAL, "band_spread"),
     "decision.headway": Distribution(LOG_NORMAL, "headway_spread"),
     "decision.return_headway": Distribution(LOG_NORMAL, "headway_spread"),
     "decision.change_duration": Distribution(LOG_NORMAL, "duration_spread"),
@@ -75,10 +76,19 @@ DISTRIBUTIONS = {
 """By the parameter's name."""
 
 
-def distribution_told(name: str) -> str:
+def spread_of(name: str, population: Population = USUAL) -> Real:
+    """How much a parameter is spread over a population, see `Distribution`."""
+    return float(getattr(population.spreads, DISTRIBUTIONS[name].spread))
+
+
+def differing(population: Population = USUAL) -> dict[str, str]:
+    """Units of the parameters that differ between drivers of a population."""
+    return {n: unit for n, unit in UNITS.items() if spread_of(n, population) > 0.0}
+
+
+def distribution_told(name: str, population: Population = USUAL) -> str:
     """Kind and spread of a parameter, as `log-normal, 0.2`."""
-    kind, spread = DISTRIBUTIONS[name]
-    return f"{kind}, {getattr(PopulationParameters(), spread):g}"
+    return f"{DISTRIBUTIONS[name].kind}, {spread_of(name, population):g}"
 
 
 class Spread(NamedTuple):
@@ -99,18 +109,22 @@ class Spread(NamedTuple):
     high: Real
 
 
-def drawn_drivers(seed: int, num_drivers: int, speed: Real) -> list[dict[str, Real]]:
+def drawn_drivers(
+    seed: int, num_drivers: int, speed: Real, population: Population = USUAL
+) -> list[dict[str, Real]]:
     """Parameters of each driver that are his or her own.
 
     Args:
         seed: Of the population.
         num_drivers: How many.
         speed: Suggested speed [m/s].
+        population: Who is drawn from.
     """
-    places = {name: leaf_names(DriverParameters()).index(name) for name in UNITS}
+    names = leaf_names(population.usual)
+    places = {name: names.index(name) for name in differing(population)}
     drivers = []
     for number in range(1, num_drivers + 1):
-        values = packed(participant_driver(seed, number, speed))
+        values = packed(participant_driver(seed, number, speed, population))
         own = {name: float(values[place]) for name, place in places.items()}
         drivers.append({"participant": number, **own})
     return drivers
@@ -125,6 +139,7 @@ def spreads(drivers: list[dict[str, Real]]) -> list[Spread]:
             *map(float, np.percentile([d[name] for d in drivers], [5, 50, 95])),
         )
         for name, unit in UNITS.items()
+        if name in drivers[0]
     ]
 
 

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from costeer.base.array import Real
-from costeer.drivers.population import POPULATION_VERSION
+from costeer.drivers.population import USUAL, Population
 from costeer.drivers.traits import FACTORS, Traits, correlation_matrix
 from costeer.pages.numerals import number
 from costeer.pages.style import (
@@ -26,8 +26,9 @@ from costeer.pages.style import (
     svg_text,
 )
 from costeer.pages.units import shown
-from costeer.validation.drawn import UNITS, drawn_correlations
+from costeer.validation.drawn import differing, drawn_correlations
 from costeer.validation.look import OURS, no_counts, num_bins
+from costeer.validation.populations import population_told
 
 _COLUMNS = 5
 _ROW_MM = 22.0
@@ -41,34 +42,36 @@ _LOW, _HIGH = STRENGTH_COLOURS["weak"], STRENGTH_COLOURS["strong"]
 """Colours of negative and of positive correlations."""
 
 
-class Population(NamedTuple):
+class Drawn(NamedTuple):
     """Drivers as they are drawn.
 
     Attributes:
         seed: Of the population.
         drivers: Of `drawn_drivers`.
+        population: That they are drawn from.
     """
 
     seed: int
     drivers: list[dict[str, Real]]
+    population: Population = USUAL
 
 
-def population_parameters_svg(population: Population) -> str:
+def population_parameters_svg(drawn: Drawn) -> str:
     """Return the figure as SVG; the same population gives the same text."""
     with styled():
-        figure = draw_parameters(population)
-        return svg_text(figure, "population", parameters_description(population))
+        figure = draw_parameters(drawn)
+        return svg_text(figure, "population", parameters_description(drawn))
 
 
-def parameters_description(population: Population) -> str:
+def parameters_description(drawn: Drawn) -> str:
     """Text for those who do not see the figure."""
     factors = "; ".join(
         f"{factor.name}: " + ", ".join(map(spoken, factor.loadings))
         for factor in FACTORS
     )
     return (
-        f"Histograms of the {len(UNITS)} parameters that differ between "
-        f"{len(population.drivers)} virtual drivers, and correlations of the "
+        f"Histograms of the {len(differing(drawn.population))} parameters that differ "
+        f"between {len(drawn.drivers)} virtual drivers, and correlations of the "
         f"{len(Traits._fields)} traits behind them. Traits that go together: "
         f"{factors}."
     )
@@ -79,38 +82,36 @@ def spoken(name: str) -> str:
     return name.replace("_", " ")
 
 
-def draw_parameters(population: Population) -> Figure:
+def draw_parameters(drawn: Drawn) -> Figure:
     """Draw histograms above correlations and loadings; call inside `styled`."""
-    rows = -(-len(UNITS) // _COLUMNS)
+    rows = -(-len(differing(drawn.population)) // _COLUMNS)
     spread_mm = 9.0 + rows * _ROW_MM
     height = spread_mm + _CORRELATIONS_MM
     figure = new_figure(FULL_WIDTH_MM, height)
-    _heading(figure, population, height)
-    _histograms(figure, population, rows, height - spread_mm)
+    _heading(figure, drawn, height)
+    _histograms(figure, drawn, rows, height - spread_mm)
     margins = Margins(
         left=24.0, right=3.0, top=spread_mm + 9.0, bottom=22.0, between_columns=25.0
     )
     ((matrix, bars),) = panels(figure, 1, 2, margins, (2.2, 1.0))
-    _correlations(matrix, population)
+    _correlations(matrix, drawn)
     _loadings(bars)
     return figure
 
 
-def _heading(figure: Figure, population: Population, height: Real) -> None:
+def _heading(figure: Figure, drawn: Drawn, height: Real) -> None:
     figure.text(
         2.0 / FULL_WIDTH_MM,
         1.0 - 1.5 / height,
-        f"Population {POPULATION_VERSION}, seed {population.seed}, "
-        f"{len(population.drivers)} virtual drivers. Histograms: how many drivers have "
+        f"{population_told(drawn.population).capitalize()}, seed {drawn.seed}, "
+        f"{len(drawn.drivers)} virtual drivers. Histograms: how many drivers have "
         "that value; line: median.",
         ha="left",
         va="top",
     )
 
 
-def _histograms(
-    figure: Figure, population: Population, rows: int, below_mm: Real
-) -> None:
+def _histograms(figure: Figure, drawn: Drawn, rows: int, below_mm: Real) -> None:
     margins = Margins(
         left=3.0,
         right=3.0,
@@ -120,13 +121,14 @@ def _histograms(
         between_rows=11.5,
     )
     axes = [a for row in panels(figure, rows, _COLUMNS, margins) for a in row]
-    for axis, (name, unit) in zip(axes, UNITS.items(), strict=False):
+    units = differing(drawn.population)
+    for axis, (name, unit) in zip(axes, units.items(), strict=False):
         unit, factor = shown(unit)
-        values = factor * np.array([driver[name] for driver in population.drivers])
+        values = factor * np.array([driver[name] for driver in drawn.drivers])
         _histogram(axis, values)
         axis.set_title(spoken(name).replace(".", ": "), size=SMALL, pad=2.0)
         axis.set_xlabel(f"[{unit}]" if unit != "-" else "[–]", size=SMALL, labelpad=1.0)
-    for axis in axes[len(UNITS) :]:
+    for axis in axes[len(units) :]:
         axis.set_visible(False)
 
 
@@ -139,14 +141,14 @@ def _histogram(axes: Axes, values: NDArray[np.float64]) -> None:
     no_counts(axes)
 
 
-def _correlations(axes: Axes, population: Population) -> None:
+def _correlations(axes: Axes, drawn: Drawn) -> None:
     """As specified below the diagonal, as drawn above it."""
     from matplotlib.colors import LinearSegmentedColormap
 
     names = [spoken(name) for name in Traits._fields]
     given = correlation_matrix()
-    drawn = drawn_correlations(population.seed, len(population.drivers))
-    shown = np.tril(given, -1) + np.triu(drawn, 1)
+    found = drawn_correlations(drawn.seed, len(drawn.drivers))
+    shown = np.tril(given, -1) + np.triu(found, 1)
     np.fill_diagonal(shown, np.nan)
     colours = LinearSegmentedColormap.from_list("both", [_LOW, "white", _HIGH])
     axes.imshow(shown, cmap=colours, vmin=-0.7, vmax=0.7, aspect="equal")

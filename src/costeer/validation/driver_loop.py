@@ -5,7 +5,8 @@ made of central differences of the very functions of a control step, as in
 validation/linear.py: no second derivation can go wrong. Noise and dry friction are left
 out; the wander of the aim does not depend on the car and adds no eigenvalue to look
 at. What a driver leaves to agreeing guidance has no slope at rest, so that here drivers
-rely on none.
+rely on none. Nor has what a driver lets go: here drivers follow what they see all the
+time, which is the linear core of every population.
 """
 
 from __future__ import annotations
@@ -58,6 +59,14 @@ _STEP = 1e-6
 def smooth(parameters: LoopParameters[Any]) -> LoopParameters[Any]:
     """The loop without dry friction, which has no slope at rest."""
     return parameters._replace(column=parameters.column._replace(friction=0.0))
+
+
+def linear_core(driver: DriverParameters) -> DriverParameters:
+    """The linear core of a driver, who relies on no guidance and lets nothing go."""
+    return driver._replace(
+        reliance=driver.reliance._replace(reliance=0.0),
+        tolerance=driver.tolerance._replace(band=0.0),
+    )
 
 
 def quiet(num_steps: int) -> Signal:
@@ -148,17 +157,20 @@ def transition(
 ) -> Signal:
     """Matrix of one control step about straight driving for each driver.
 
+    Of a driver who tolerates nothing: the band is 0, and what is seen is followed.
+
     Args:
         parameters: Of a trial, of the paper's method if there is a gain; its driver is
             left out.
-        drivers: Who holds the wheel.
+        drivers: Who holds the wheel, of whom reliance and tolerance are left out.
         gain: K_h times the strength factor; 0 is manual driving [-].
 
     Returns:
         Shape `(driver, state, state)`, in the order of `STATES`.
     """
-    alone = [d._replace(reliance=d.reliance._replace(reliance=0.0)) for d in drivers]
-    every = smooth(parameters)._replace(driver=_stacked(alone))
+    every = smooth(parameters)._replace(
+        driver=_stacked(list(map(linear_core, drivers)))
+    )
     steps = _STEP * np.concatenate([np.eye(len(STATES)), -np.eye(len(STATES))])
     tried = np.broadcast_to(steps, (len(drivers), *steps.shape))
     ahead, back = np.split(_after_a_step(every, tried, gain), 2, axis=1)

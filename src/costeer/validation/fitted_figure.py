@@ -7,7 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from costeer.drivers.population import POPULATION_VERSION, participant_driver
+from costeer.drivers.population import SECOND, participant_driver
 from costeer.identification.fit import DriverFit
 from costeer.identification.parameters import Estimate, value_of
 from costeer.pages.style import (
@@ -24,6 +24,7 @@ from costeer.pages.style import (
 )
 from costeer.pages.units import shown
 from costeer.validation.look import HUMAN, OURS, no_counts
+from costeer.validation.populations import population_told
 
 POPULATION_SEED = 1
 NUM_DRIVERS = 500
@@ -69,7 +70,7 @@ def draw_fit(fit: DriverFit, suggested_speed: float) -> Figure:
     figure.text(
         2.0 / FULL_WIDTH_MM,
         1.0 - 1.5 / height,
-        f"Grey: population {POPULATION_VERSION} of virtual drivers; green: the "
+        f"Grey: {population_told(SECOND)} of virtual drivers; green: the "
         "fitted driver, with the 95 % interval.",
         ha="left",
         va="top",
@@ -85,7 +86,7 @@ def draw_fit(fit: DriverFit, suggested_speed: float) -> Figure:
     )
     axes = [a for row in panels(figure, rows, _COLUMNS, margins) for a in row]
     drivers = [
-        participant_driver(POPULATION_SEED, number, suggested_speed)
+        participant_driver(POPULATION_SEED, number, suggested_speed, SECOND)
         for number in range(1, NUM_DRIVERS + 1)
     ]
     for axis, estimate in zip(axes, fit.estimates, strict=False):

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from costeer.base.array import Real
+from costeer.drivers.population import USUAL, Population
 from costeer.loop.scenario import TrialSetup
 from costeer.loop.trial import simulate_trial
 from costeer.methods.conditions import MANUAL
@@ -63,25 +64,34 @@ class ManualDriving(NamedTuple):
         trials: A row per driver.
         changes: A row per lane change.
         planned_changes: Lane changes that the course asks for.
+        population: Who drove; its domain says which targets it is held to.
     """
 
     trials: list[Row]
     changes: list[Row]
     planned_changes: int
+    population: Population = USUAL
 
 
-def manual_record(seed: int, participant: int, condition: str = MANUAL) -> TrialRecord:
+def manual_record(
+    seed: int,
+    participant: int,
+    condition: str = MANUAL,
+    population: Population = USUAL,
+) -> TrialRecord:
     """Drive one manual trial.
 
     Args:
         seed: Of the population.
         participant: Number of the driver.
         condition: Other conditions have other noise; the driver is the same.
+        population: Who is drawn from.
     """
     return simulate_trial(
         TrialSetup(
             participant=participant,
             seed=seed,
+            driver=population.name,
             condition=condition,
             strength_factor=0.0,
             intention="off",
@@ -90,10 +100,13 @@ def manual_record(seed: int, participant: int, condition: str = MANUAL) -> Trial
 
 
 def manual_trial(
-    seed: int, participant: int, condition: str = MANUAL
+    seed: int,
+    participant: int,
+    condition: str = MANUAL,
+    population: Population = USUAL,
 ) -> tuple[Row, list[Row]]:
     """Drive one manual trial; return its row and its lane changes' rows."""
-    return measured(manual_record(seed, participant, condition))
+    return measured(manual_record(seed, participant, condition, population))
 
 
 def measured(record: TrialRecord) -> tuple[Row, list[Row]]:
@@ -121,6 +134,7 @@ def drive_population(
     jobs: int = 2,
     progress: Callable[[int], None] | None = None,
     condition: str = MANUAL,
+    population: Population = USUAL,
 ) -> ManualDriving:
     """Let a population drive manually, one trial each.
 
@@ -130,21 +144,24 @@ def drive_population(
         jobs: Threads.
         progress: Called with the number of trials just done.
         condition: Other conditions have other noise; the drivers are the same.
+        population: Who is drawn from.
     """
     done = in_threads(
-        lambda number: manual_trial(seed, number, condition),
+        lambda number: manual_trial(seed, number, condition, population),
         range(1, num_drivers + 1),
         jobs,
         progress,
     )
-    return gathered(done)
+    return gathered(done, population)
 
 
-def gathered(done: Sequence[tuple[Row, list[Row]]]) -> ManualDriving:
+def gathered(
+    done: Sequence[tuple[Row, list[Row]]], population: Population = USUAL
+) -> ManualDriving:
     """The driving of a population from the rows of its trials, one a driver."""
     trials = [trial for trial, _ in done]
     changes = [change for _, own in done for change in own]
-    return ManualDriving(trials, changes, PLANNED_CHANGES * len(done))
+    return ManualDriving(trials, changes, PLANNED_CHANGES * len(done), population)
 
 
 def rows_of(driving: ManualDriving, measure: Measure) -> list[Row]:
@@ -153,9 +170,9 @@ def rows_of(driving: ManualDriving, measure: Measure) -> list[Row]:
 
 
 def compare(driving: ManualDriving) -> list[TargetCheck]:
-    """Every target beside what the population gives."""
+    """Every target of the population's domain beside what the population gives."""
     found = []
-    for target in TARGETS:
+    for target in TARGETS[driving.population.domain]:
         measure = MEASURES[target.name]
         values = columns_of(rows_of(driving, measure))(measure.column)
         value = target_statistic(measure, values)

@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 
 from costeer.base.array import Real
 from costeer.controller.actuation import STRONG
+from costeer.drivers.population import USUAL, Population
 from costeer.loop.parameters import DT
 from costeer.loop.scenario import PILOT_SEED, TrialSetup, trial_car
 from costeer.loop.trial import simulate_trial
@@ -118,11 +119,16 @@ QUANTITIES = {
 
 
 def wrong_change(
-    seed: int, participant: int, change_duration: Real, system: str, trial: int
+    seed: int,
+    participant: int,
+    change_duration: Real,
+    system: str,
+    trial: int,
+    population: Population = USUAL,
 ) -> TrialSetup:
     """A trial with one lane change that the driver does not want.
 
-    Both systems meet the same driver with the same noise.
+    Both systems meet the same driver, of this population, with the same noise.
 
     Raises:
         ValueError: If the system is not known.
@@ -134,6 +140,7 @@ def wrong_change(
     setup = TrialSetup(
         participant=participant,
         seed=seed,
+        driver=population.name,
         condition=f"pilot-wrong-change-{trial}",
         strength_factor=STRONG,
         change_duration=change_duration,
@@ -206,11 +213,15 @@ def _mean(values: NDArray[np.float64]) -> Real:
 
 
 def _driver_means(
-    seed: int, participant: int, change_duration: Real, system: str
+    seed: int,
+    participant: int,
+    change_duration: Real,
+    system: str,
+    population: Population,
 ) -> list[Real]:
     """Means over one driver's trials, in the order of `QUANTITIES`."""
     setups = [
-        wrong_change(seed, participant, change_duration, system, trial)
+        wrong_change(seed, participant, change_duration, system, trial, population)
         for trial in range(len(TRIGGER_TIMES))
     ]
     given = [answer(simulate_trial(setup).columns, setup) for setup in setups]
@@ -222,6 +233,7 @@ def resist(
     num_drivers: int = 40,
     jobs: int = 2,
     progress: Callable[[int], None] | None = None,
+    population: Population = USUAL,
 ) -> list[Resistance]:
     """Let pilot drivers resist wrong lane changes of 4, 6 and 8 s.
 
@@ -230,10 +242,13 @@ def resist(
         num_drivers: How many.
         jobs: Threads.
         progress: Called with the number of drivers just done, six times for each.
+        population: Who is drawn from.
     """
     cells = [(time, system) for time in CHANGE_DURATIONS for system in SYSTEMS]
     tasks = [(n, *cell) for cell in cells for n in range(1, num_drivers + 1)]
-    means = in_threads(lambda task: _driver_means(seed, *task), tasks, jobs, progress)
+    means = in_threads(
+        lambda task: _driver_means(seed, *task, population), tasks, jobs, progress
+    )
     table = np.array(means).reshape(len(cells), num_drivers, len(QUANTITIES))
     return [
         Resistance(time, system, *np.transpose(values))

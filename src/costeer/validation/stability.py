@@ -2,13 +2,18 @@
 
 Three looks at manual driving. The linear loop: central differences of the very
 functions of a control step, for all drivers at once, without noise and dry friction,
-about straight driving; its eigenvalues give damping. The nonlinear loop: a start beside
-the aim without noise, swings and settling without dry friction. And a manual trial
-with everything, how far the car strays.
+about straight driving; its eigenvalues give damping. Nothing is let go there. The
+nonlinear loop is that of the whole driver: a start beside the aim without noise, swings
+and settling without dry friction. And a manual trial with everything, how far the car
+strays.
 
-With dry friction and without noise the car hunts slowly about the aim, because the
-arms stop pushing before the friction lets go: its amplitude is told (`hunting`), not
-judged, as the driver's own noise keeps the wheel moving in a trial.
+Who tolerates a distance (drivers/tolerance.py) does not come to rest at the aim: the
+car drifts until the distance is worth a correction, and is corrected. That is no swing
+of the loop, and does not grow: a start is so much farther out, settled is so much
+wider, and swings within it do not count (`let_go`). With dry friction and without noise
+the car hunts about the aim even without tolerance, because the arms stop pushing before
+the friction lets go: that amplitude is told (`hunting`), not judged, as the driver's
+own noise keeps the wheel moving in a trial.
 """
 
 from __future__ import annotations
@@ -22,10 +27,15 @@ from numpy.typing import NDArray
 
 from costeer.base.array import Real
 from costeer.drivers.driver import DriverParameters
-from costeer.drivers.population import participant_driver
+from costeer.drivers.population import USUAL, Population
 from costeer.loop.parameters import DT, LoopParameters
 from costeer.loop.rollout import rollout
-from costeer.loop.scenario import TrialSetup, loop_parameters, trial_car
+from costeer.loop.scenario import (
+    TrialSetup,
+    loop_parameters,
+    trial_car,
+    trial_driver,
+)
 from costeer.loop.tick import INTENTION_OFF, PREDICTION_HORIZON, Script
 from costeer.loop.trial import idle_network, simulate_trial
 from costeer.methods.manual import MANUAL
@@ -46,13 +56,17 @@ SPEEDS = (50.0 / 3.6, 70.0 / 3.6, 90.0 / 3.6, 110.0 / 3.6)
 """Speeds of the figures [m/s]."""
 
 OFFSET = 0.5
-"""Distance from the aim that a run without noise starts with [m]."""
+"""Distance from what is let go that a run without noise starts with [m]."""
 
 SETTLED = 0.1
-"""An offset within this has been corrected [m]."""
+"""An offset within this, beyond what is let go, has been corrected [m]."""
 
 SMALLEST_SWING = 0.02
-"""Swings smaller than this are not looked at [m]."""
+"""Swings smaller than this, beyond what is let go, are not looked at [m]."""
+
+DRIFTING = 2.0
+"""What is let go while the car drifts, over what is when it stands beside the aim [-].
+Assumed: it drifts on while the evidence gathers and the hands move."""
 
 _RUN = 60.0
 _LATE = 40.0
@@ -65,7 +79,7 @@ class StabilityBounds(NamedTuple):
     Attributes:
         damping_ratio: Least of a swing [-]. At 0.07 each swing is 0.8 of the last.
         swing_ratio: Largest of a swing to the one before it [-].
-        settling_time: Of a 0.5 m offset to within 0.1 m [s].
+        settling_time: From 0.5 m to within 0.1 m, both beyond what is let go [s].
         edge_strip: A wheel farther beyond the road's outer line than this has left
             the road [m]. Assumed, less than a paved shoulder.
     """
@@ -85,10 +99,10 @@ class Stability(NamedTuple):
         damping_ratio: Smallest of all swings of the linear loop, 1 if none [-].
         frequency: Of that swing, NaN if none [rad/s].
         largest_modulus: Of the eigenvalues of a control step; stable below 1 [-].
-        settling_time: After which an offset of 0.5 m stays within 0.1 m, without
-            noise and dry friction; infinite if it does not [s].
+        settling_time: After which an offset of 0.5 m stays within 0.1 m, both beyond
+            what is let go, without noise and dry friction; infinite if it does not [s].
         swing_ratio: Largest ratio of a swing to the one before it then, 0 if there
-            is no second swing [-].
+            is no second swing beyond what is let go [-].
         hunting: Amplitude of lateral position long after, with dry friction [m].
         edge_margin: Least distance of a wheel from the road's outer lines in a
             manual trial, negative beyond them [m].
@@ -129,6 +143,21 @@ def _no_intention() -> Script:
     return Script(INTENTION_OFF, PREDICTION_HORIZON, np.empty(0))
 
 
+def let_go(driver: DriverParameters, speed: Real) -> Real:
+    """Distance from the aim that a driver does not correct, and drifts within [m].
+
+    Beside the aim and along the road the near point asks for K_c y / (v² t_near). It is
+    let go while r τ (|angle| / b - 1) stays below 1: the evidence is never complete.
+
+    Args:
+        driver: Whose tolerance it is; 0 for one without.
+        speed: [m/s].
+    """
+    own, eyes = driver.tolerance, driver.vision
+    angle = own.band * (1.0 + 1.0 / (own.evidence_rate * own.forgetting_time))
+    return DRIFTING * angle * eyes.near_time * speed**2 / eyes.near_gain
+
+
 def offset_run(parameters: LoopParameters[Any], offset: Real = OFFSET) -> Signal:
     """Distance from the aim after a start beside it, without noise, `(time,)` [m].
 
@@ -155,17 +184,28 @@ def swings(signal: Signal) -> Signal:
     return np.array([np.abs(part).max() for part in np.split(signal, turns)])
 
 
-def swing_ratio(signal: Signal) -> Real:
-    """Largest ratio of a swing to the one before it, 0 with one swing only [-]."""
+def swing_ratio(signal: Signal, room: Real = 0.0) -> Real:
+    """Largest ratio of a swing to the one before it, 0 with one swing only [-].
+
+    Args:
+        signal: Distance from the aim, shape `(time,)` [m].
+        room: What is let go [m].
+    """
     size = swings(signal)
     before, after = size[:-1], size[1:]
-    seen = (before > SMALLEST_SWING) & (after > SMALLEST_SWING)
+    smallest = SMALLEST_SWING + room
+    seen = (before > smallest) & (after > smallest)
     return float(np.max(after / before, where=seen, initial=0.0))
 
 
-def settling_time(signal: Signal) -> Real:
-    """Time from which a distance stays within `SETTLED` [s], infinite if never."""
-    outside = np.flatnonzero(np.abs(signal) > SETTLED)
+def settling_time(signal: Signal, room: Real = 0.0) -> Real:
+    """Time from which a distance stays within `SETTLED` [s], infinite if never.
+
+    Args:
+        signal: Distance from the aim, shape `(time,)` [m].
+        room: What is let go, beyond which it counts [m].
+    """
+    outside = np.flatnonzero(np.abs(signal) > SETTLED + room)
     if outside.size == 0:
         return 0.0
     last = int(outside[-1]) + 1
@@ -184,19 +224,16 @@ def edge_margin(setup: TrialSetup) -> Real:
 def _runs(setup: TrialSetup) -> tuple[Real, Real, Real, Real]:
     """Settling time, swing ratio, hunting and edge margin of a setup's driver."""
     parameters = loop_parameters(manual_setup(setup.car, setup.speed))
-    parameters = parameters._replace(driver=_driver(setup))
-    free = offset_run(smooth(parameters))
+    driver = trial_driver(setup)
+    parameters, room = parameters._replace(driver=driver), let_go(driver, setup.speed)
+    free = offset_run(smooth(parameters), OFFSET + room)
     rubbing = offset_run(parameters)[round(_LATE / DT) :]
     return (
-        settling_time(free),
-        swing_ratio(free),
+        settling_time(free, room),
+        swing_ratio(free, room),
         amplitude(rubbing),
         edge_margin(setup),
     )
-
-
-def _driver(setup: TrialSetup) -> DriverParameters:
-    return participant_driver(setup.seed, setup.participant, setup.speed)
 
 
 def driver_stability(
@@ -206,6 +243,7 @@ def driver_stability(
     progress: Callable[[int], None] | None = None,
     car: str = "default",
     speed: Real = 70.0 / 3.6,
+    population: Population = USUAL,
 ) -> Stability:
     """Look at a population in manual driving.
 
@@ -216,11 +254,18 @@ def driver_stability(
         progress: Called with the number of drivers just done.
         car: Its name.
         speed: [m/s].
+        population: Who is drawn from.
     """
-    manual = TrialSetup(seed=seed, intention="off", car=car, speed=speed)
+    manual = TrialSetup(
+        seed=seed,
+        driver=population.name,
+        intention="off",
+        car=car,
+        speed=speed,
+    )
     setups = [manual._replace(participant=n) for n in range(1, num_drivers + 1)]
     parameters = loop_parameters(manual_setup(car, speed))
-    matrices = transition(parameters, [_driver(setup) for setup in setups])
+    matrices = transition(parameters, [trial_driver(setup) for setup in setups])
     ratio, frequency = least_damped(poles(matrices))
     runs = np.array(in_threads(_runs, setups, jobs, progress))
     return Stability(

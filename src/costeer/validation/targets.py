@@ -1,6 +1,7 @@
 """The twelve human ranges of manual driving, M1 to M12, and what is held to them.
 
-Where a range is from stands beside it; a range that nobody printed says assumed.
+Where a range is from stands beside it; a range that nobody printed says assumed. How
+long lane changes last depends on the domain of driving, and the targets with it.
 """
 
 from __future__ import annotations
@@ -12,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from costeer.base.array import Real
+from costeer.drivers.population import SIMULATOR, TRAFFIC
 
 TRIALS = "trials"
 CHANGES = "changes"
@@ -66,11 +68,12 @@ _ON_ROAD = "assumed; the order of on-the-road tests (Verster and Roth 2011)"
 _STEERING = "assumed; the measure is that of Markkula and Engström (2006)"
 _NGSIM = "NGSIM US-101 and I-80, lane changes of cars"
 _ASSUMED = "assumed; order of simulator studies"
+_FIXED_BASE = f"{_ASSUMED} (docs/decisions/0016)"
 _JAIN = "Jain et al. (2015), Brain4Cars, ten drivers"
 _WANDER = "the wander of the aim and the noise of eyes and hands"
 _PLAN = "the planned duration of lane changes and its spread"
 
-TARGETS = (
+_ON_REAL_ROADS = (
     Target("M1", "SDLP, mean over drivers", "m", 0.15, 0.25, _ON_ROAD, _WANDER),
     Target(
         "M2",
@@ -142,6 +145,29 @@ TARGETS = (
         "the rate of glances without a lane change",
     ),
 )
+
+_IN_A_SIMULATOR = {
+    "M4": (4.6, 5.6),
+    "M5": (0.7, 1.2),
+    "M9": (0.81, 1.19),
+    "M10": (1.85, 2.8),
+}
+"""Ranges of what NGSIM gives on real roads: a median of 5.1 s within a tenth, a spread
+of its own, and speed and crossing scaled in time by 5.1 / 5.5, the median of NGSIM."""
+
+
+def _in_a_simulator(target: Target) -> Target:
+    if target.name not in _IN_A_SIMULATOR:
+        return target
+    low, high = _IN_A_SIMULATOR[target.name]
+    return target._replace(low=low, high=high, source=_FIXED_BASE)
+
+
+TARGETS = {
+    SIMULATOR: tuple(map(_in_a_simulator, _ON_REAL_ROADS)),
+    TRAFFIC: _ON_REAL_ROADS,
+}
+"""M1 to M12, in this order, by the domain of driving."""
 
 _DEG = 180.0 / math.pi
 

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from scipy.stats import binomtest
 
-from costeer.validation.manual import TARGETS
+from costeer.drivers.population import SIMULATOR, TRAFFIC
 from costeer.validation.people.compare import compare_real, drift_spectra
 from costeer.validation.people.findings import (
     SHARE,
@@ -23,6 +23,7 @@ from costeer.validation.people.folder import ENVIRONMENT, data_folder
 from costeer.validation.people.observe import Observations, observe
 from costeer.validation.people.onset import OnsetTest
 from costeer.validation.people.ranges import QUANTITIES
+from costeer.validation.targets import TARGETS
 from tests.validation.people.test_observe import CHANGES, trial
 
 HAS_DATA = pytest.mark.skipif(
@@ -63,7 +64,7 @@ def test_every_range_is_one() -> None:
 @pytest.mark.parametrize(("name", "target"), FROM_TARGETS.items())
 def test_ranges_of_the_targets_are_theirs(name: str, target: str) -> None:
     ours = next(each for each in QUANTITIES if each.name == name)
-    theirs = next(each for each in TARGETS if each.name == target)
+    theirs = next(each for each in TARGETS[TRAFFIC] if each.name == target)
     assert (ours.low, ours.high) == (theirs.low, theirs.high)
 
 
@@ -72,6 +73,17 @@ def test_without_recordings_drivers_are_still_held_to_the_ranges() -> None:
     assert [each.name for each in found] == [each.name for each in QUANTITIES]
     assert all(each.people.size == 0 for each in found)
     assert all(each.drivers.size > 0 for each in found)
+
+
+def test_lane_changes_of_ngsim_are_of_traffic_and_hold_for_it_alone() -> None:
+    lane_changes = {q.name for q in QUANTITIES if "(ngsim_lc)" in q.source}
+    assert lane_changes == {"R1", "R2", "R3", "R4", "R5"}
+    for domain, elsewhere in ((SIMULATOR, lane_changes), (TRAFFIC, set())):
+        found = compare_real([seen()], ONSET, None, domain)
+        assert {each.name for each in found if each.elsewhere} == elsewhere
+        held = {each.name for each in found if is_target(each)}
+        assert held.isdisjoint(elsewhere)
+        assert "R14" in held
 
 
 def test_drivers_values_stand_under_their_names() -> None:

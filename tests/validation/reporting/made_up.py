@@ -9,7 +9,7 @@ import numpy as np
 from costeer.validation.arms import FREQUENCIES, PUBLISHED, TASKS, ArmTest
 from costeer.validation.departures import LaneHold, departures
 from costeer.validation.drawn import drawn_drivers
-from costeer.validation.drawn_figure import Population
+from costeer.validation.drawn_figure import Drawn
 from costeer.validation.manual import PLANNED_CHANGES, ManualDriving, Row
 from costeer.validation.people.compare import Spectra
 from costeer.validation.people.findings import RealComparison
@@ -145,7 +145,7 @@ def evidence(num_drivers: int = 6, there: bool = True) -> Evidence:
     held = LaneHold(0.2, 0.0, 0.1, 20.0, 0.0, 8000.0)
     density = np.array([0.1, 0.01, 0.001])
     return Evidence(
-        population=Population(SEED, drawn_drivers(SEED, num_drivers, 70.0 / 3.6)),
+        drawn=Drawn(SEED, drawn_drivers(SEED, num_drivers, 70.0 / 3.6)),
         driving=first,
         again=second,
         spreads=target_spreads(first, second),

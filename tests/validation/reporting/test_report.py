@@ -11,10 +11,11 @@ from types import ModuleType
 
 import pytest
 
-from costeer.drivers.population import POPULATION_VERSION
+from costeer.drivers.population import ON_THE_ROAD, SIMULATOR
 from costeer.validation.intention import report as judgement
-from costeer.validation.reporting import report
+from costeer.validation.reporting import report, summary
 from costeer.validation.reporting.report import prepare, write_validation
+from costeer.validation.reporting.sections import page_sections
 from costeer.validation.targets import TARGETS
 from tests.validation.reporting.made_up import SEED, bare, evidence
 
@@ -67,7 +68,7 @@ def test_the_sections_stand_in_their_order(page: str) -> None:
 
 def test_the_summary_says_who_drove_and_what_came_out(page: str) -> None:
     opening = words(page.split("<nav")[0])
-    who = f"6 virtual drivers, population {POPULATION_VERSION}, seed {SEED}."
+    who = f"6 virtual drivers, population 3 (virtual), seed {SEED}."
     assert who in opening
     assert "of 12 targets are met" in opening
     assert "The largest miss is M" in opening
@@ -76,9 +77,38 @@ def test_the_summary_says_who_drove_and_what_came_out(page: str) -> None:
     assert "No run with the guidance of a study was looked at." in opening
 
 
+def test_another_population_is_named_and_held_to_its_domain() -> None:
+    made = evidence()
+    road = made._replace(
+        drawn=made.drawn._replace(population=ON_THE_ROAD),
+        driving=made.driving._replace(population=ON_THE_ROAD),
+    )
+    assert summary.subtitle(road) == (
+        f"6 virtual drivers, population 3 (virtual-traffic), seed {SEED}."
+    )
+    assert "population 3 (virtual-traffic)" in summary.looked_at(road)[0]
+    making = page_sections(road, {})[-1]
+    assert "--population virtual-traffic" in making.text[0]
+    assert "--population" not in page_sections(made, {})[-1].text[0]
+    shown = {row[0]: row[2] for row in page_sections(road, {})[0].items[0].rows}
+    assert shown["M4"] == "5 to 6.3"
+    shown = {row[0]: row[2] for row in page_sections(made, {})[0].items[0].rows}
+    assert shown["M4"] == "4.6 to 5.6"
+
+
+def test_what_is_of_another_domain_is_said_and_not_counted() -> None:
+    made = evidence()
+    duration, share, torque = made.people
+    away = share._replace(domain="traffic", elsewhere=True)
+    told = summary.people_sentence(made._replace(people=[duration, away, torque]))
+    assert told.startswith("1 of 1 quantities of people are met. R2 are of another")
+    assert "(traffic; these drivers: simulator)" in told
+    assert summary.elsewhere_sentence(made) == ""
+
+
 def test_every_target_has_range_value_spread_verdict_and_source(page: str) -> None:
     shown = table(page, "targets")
-    for target in TARGETS:
+    for target in TARGETS[SIMULATOR]:
         assert f"{target.name} {target.quantity} [{target.unit}]" in shown
         assert target.source in shown
     assert shown.count("met") >= 1
@@ -116,7 +146,7 @@ def test_the_same_evidence_gives_the_same_bytes(folder: Path, tmp_path: Path) ->
 
 def test_targets_csv_has_value_interval_spread_and_verdict(folder: Path) -> None:
     found = rows(folder / "targets.csv")
-    assert list(found) == [target.name for target in TARGETS]
+    assert list(found) == [target.name for target in TARGETS[SIMULATOR]]
     sdlp = found["M1"]
     assert float(sdlp["value_low_95"]) < float(sdlp["value"])
     assert float(sdlp["value"]) < float(sdlp["value_high_95"])

@@ -6,6 +6,7 @@ import math
 
 import pytest
 
+from costeer.drivers.population import TRAFFIC
 from costeer.validation.manual import TargetCheck
 from costeer.validation.reporting.verdicts import (
     largest_miss,
@@ -22,7 +23,7 @@ from costeer.validation.spread import TargetSpread
 from costeer.validation.targets import TARGETS
 from tests.validation.reporting.made_up import people
 
-SDLP = TARGETS[0]  # 0.15 to 0.25 m
+SDLP = TARGETS[TRAFFIC][0]  # 0.15 to 0.25 m
 
 
 def spread(low: float, high: float) -> TargetSpread:
@@ -55,7 +56,7 @@ def test_a_value_that_is_not_known_is_neither_met_nor_missed() -> None:
 
 
 def test_the_largest_miss_is_the_largest_share_of_its_limit() -> None:
-    torque = TARGETS[6]  # 0.2 to 0.7 N·m
+    torque = TARGETS[TRAFFIC][6]  # 0.2 to 0.7 N·m
     by_tenth = TargetCheck(SDLP, 0.275, False)
     by_fifth = TargetCheck(torque, 0.84, False)
     assert largest_miss([by_tenth, by_fifth]) == by_fifth
@@ -65,6 +66,14 @@ def test_quantities_of_people_are_met_missed_or_reported() -> None:
     assert [real_verdict(each) for each in people()] == ["met", "missed", "reported"]
     # 14 of 20 are 70 %, 10 below the range.
     assert real_verdict_told(people()[1]) == "missed by 10"
+
+
+def test_a_range_of_another_domain_is_neither_met_nor_missed() -> None:
+    duration, share, torque = people()
+    for each in (duration, share._replace(domain="traffic")):
+        assert real_verdict_told(each._replace(elsewhere=True)) == "another domain"
+    nothing = torque._replace(drivers=torque.drivers[:0], elsewhere=True)
+    assert real_verdict(nothing) == "no value"
 
 
 @pytest.mark.parametrize(

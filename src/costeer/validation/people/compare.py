@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from costeer.drivers.population import USUAL
 from costeer.validation.people import brain4cars, gps, leeds, ngsim, torque
 from costeer.validation.people.brain4cars import BACK, OUT, SHOULDER_ANGLE, Look
 from costeer.validation.people.drift import (
@@ -49,6 +50,7 @@ def compare_real(
     observations: list[Observations],
     onset: Sequence[OnsetTest],
     folder: Path | None,
+    domain: str = USUAL.domain,
 ) -> list[RealComparison]:
     """Every quantity of people beside the same of virtual drivers.
 
@@ -56,6 +58,7 @@ def compare_real(
         observations: Of a manual trial each.
         onset: Corrections of a heading error, a driver each; may be empty.
         folder: With the recordings (`folder.data_folder`); None for none.
+        domain: Of the virtual drivers.
 
     Raises:
         ValueError: If a set that is present cannot be read.
@@ -67,6 +70,7 @@ def compare_real(
             **each._asdict(),
             people=people[each.name],
             drivers=drivers[each.name],
+            elsewhere=each.domain not in ("", domain),
         )
         for each in QUANTITIES
     ]

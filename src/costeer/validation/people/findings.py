@@ -34,6 +34,9 @@ class RealComparison(NamedTuple):
         statistic: "median", "mean" or "share"; a share is the mean of values that are
             0 or 100 %.
         reason: Why drivers and people may differ; may be empty.
+        domain: Of driving, if the quantity depends on it; else empty.
+        elsewhere: Whether the drivers are of another domain: then the range is told,
+            and nobody is held to it.
     """
 
     name: str
@@ -47,6 +50,8 @@ class RealComparison(NamedTuple):
     high: Real
     statistic: str
     reason: str
+    domain: str = ""
+    elsewhere: bool = False
 
 
 def known(values: Values) -> Values:
@@ -82,7 +87,8 @@ def people_value(comparison: RealComparison) -> Real:
 
 def is_target(comparison: RealComparison) -> bool:
     """Whether there is a range to meet; others are reported only."""
-    return math.isfinite(comparison.low) and math.isfinite(comparison.high)
+    ends = math.isfinite(comparison.low) and math.isfinite(comparison.high)
+    return ends and not comparison.elsewhere
 
 
 def met(comparison: RealComparison) -> bool:

@@ -21,7 +21,7 @@ from costeer.controller.signals import Request
 from costeer.controller.step import ControllerParameters
 from costeer.drivers.driver import DriverParameters
 from costeer.drivers.interface import DriverNoise
-from costeer.drivers.population import participant_driver
+from costeer.drivers.population import USUAL, Population, participant_driver
 from costeer.loop.noise import driver_noise
 from costeer.loop.parameters import DT, LoopParameters, StartParameters
 from costeer.loop.rows import rules_of
@@ -126,7 +126,11 @@ def _turned(state: LoopState[Any], yaw_angle: Real) -> LoopState[Any]:
 
 
 def onset_test(
-    seed: int, participant: int, repeats: int = 4, speed: Real = SPEED
+    seed: int,
+    participant: int,
+    repeats: int = 4,
+    speed: Real = SPEED,
+    population: Population = USUAL,
 ) -> OnsetTest:
     """Let one driver of a population correct errors to both sides.
 
@@ -137,8 +141,9 @@ def onset_test(
         participant: Number of the driver.
         repeats: Corrections per heading error, to the left and right in turn.
         speed: Of the car, and the driver's [m/s].
+        population: Who is drawn from.
     """
-    driver = participant_driver(seed, participant, speed)
+    driver = participant_driver(seed, participant, speed, population)
     num_steps = round(VISIBLE / DT)
     medians = []
     for heading in HEADINGS:

@@ -9,7 +9,8 @@ filmed vehicles, too high by the error of the film; the range goes from the lowe
 quartile of the first to the upper quartile of the second. Ranges were computed once
 from the shared half of the recordings and stand here as numbers, so that a verdict
 does not depend on who has the recordings; a test holds them to the recordings where
-these are present. What is only reported has no range (NaN).
+these are present. What is only reported has no range (NaN). Lane changes of
+NGSIM are those of real traffic: drivers of another domain are not held to them.
 """
 
 from __future__ import annotations
@@ -18,6 +19,7 @@ from math import nan
 from typing import NamedTuple
 
 from costeer.base.array import Real
+from costeer.drivers.population import TRAFFIC
 from costeer.validation.people.findings import MEAN, MEDIAN, SHARE
 
 
@@ -34,6 +36,7 @@ class Quantity(NamedTuple):
         high: Largest accepted value, NaN likewise.
         statistic: "median", "mean" or "share".
         reason: Why drivers and people may differ.
+        domain: Of driving, if the quantity depends on it; else empty.
     """
 
     name: str
@@ -45,6 +48,7 @@ class Quantity(NamedTuple):
     high: Real
     statistic: str
     reason: str
+    domain: str = ""
 
 
 _NGSIM = "NGSIM US-101 and I-80 (ngsim_lc)"
@@ -88,6 +92,7 @@ _CHANGES = (
         6.3,
         MEDIAN,
         _DENSE,
+        TRAFFIC,
     ),
     Quantity(
         "R2",
@@ -99,6 +104,7 @@ _CHANGES = (
         5.0,
         MEDIAN,
         "People's own shapes vary more than their mean does; tracks are noisy.",
+        TRAFFIC,
     ),
     Quantity(
         "R3",
@@ -110,6 +116,7 @@ _CHANGES = (
         5.0,
         MEAN,
         "",
+        TRAFFIC,
     ),
     Quantity(
         "R4",
@@ -121,6 +128,7 @@ _CHANGES = (
         1.1,
         MEDIAN,
         f"{_DENSE} Ours are 3.5 m.",
+        TRAFFIC,
     ),
     Quantity(
         "R5",
@@ -132,6 +140,7 @@ _CHANGES = (
         3.0,
         MEDIAN,
         f"It stands for the crossing, which is not marked. {_CLIPPED}",
+        TRAFFIC,
     ),
     Quantity(
         "R6",

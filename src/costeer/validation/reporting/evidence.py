@@ -7,7 +7,7 @@ from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import NamedTuple
 
-from costeer.drivers.population import participant_driver
+from costeer.drivers.population import USUAL, Population, participant_driver
 from costeer.loop.scenario import PILOT_SEED
 from costeer.validation.arms import ArmTest, arm_tests
 from costeer.validation.departures import (
@@ -17,7 +17,7 @@ from costeer.validation.departures import (
     lane_hold,
 )
 from costeer.validation.drawn import drawn_drivers
-from costeer.validation.drawn_figure import Population
+from costeer.validation.drawn_figure import Drawn
 from costeer.validation.manual import (
     AGAIN,
     ManualDriving,
@@ -67,19 +67,21 @@ class Plan(NamedTuple):
         num_drivers: In manual driving.
         jobs: Threads.
         data: Folder with recordings of people; None for none.
+        population: Who is drawn from.
     """
 
     seed: int
     num_drivers: int
     jobs: int
     data: Path | None
+    population: Population = USUAL
 
 
 class Evidence(NamedTuple):
     """All that was simulated and compared; None or empty is left out of the report.
 
     Attributes:
-        population: The drivers as drawn.
+        drawn: The drivers, and of which population they are.
         driving: First manual trials.
         again: Second ones of the same drivers with other noise.
         spreads: Of all targets.
@@ -92,7 +94,7 @@ class Evidence(NamedTuple):
         stability: Of more drivers.
     """
 
-    population: Population
+    drawn: Drawn
     driving: ManualDriving
     again: ManualDriving
     spreads: list[TargetSpread]
@@ -120,19 +122,21 @@ def gather(plan: Plan, stage: Stage) -> Evidence:
     """
     compare_real([], [], plan.data)
     trials = _first_trials(plan, stage)
-    driving = gathered([(each.row, each.changes) for each in trials])
+    driving = gathered([(t.row, t.changes) for t in trials], plan.population)
     observations = [each.observations for each in trials]
     with stage("manual trials again", plan.num_drivers) as advance:
-        again = drive_population(plan.seed, plan.num_drivers, plan.jobs, advance, AGAIN)
+        again = drive_population(
+            plan.seed, plan.num_drivers, plan.jobs, advance, AGAIN, plan.population
+        )
     onsets = _onsets(plan, stage)
-    drawn = drawn_drivers(plan.seed, plan.num_drivers, SPEED)
+    drawn = drawn_drivers(plan.seed, plan.num_drivers, SPEED, plan.population)
     return Evidence(
-        population=Population(plan.seed, drawn),
+        drawn=Drawn(plan.seed, drawn, plan.population),
         driving=driving,
         again=again,
         spreads=target_spreads(driving, again),
         departures=departures([each.hold for each in trials]),
-        people=compare_real(observations, onsets, plan.data),
+        people=compare_real(observations, onsets, plan.data, plan.population.domain),
         spectra=drift_spectra(observations, plan.data),
         num_onsets=len(onsets),
         arms=_arms(plan, stage),
@@ -161,7 +165,7 @@ def _first_trials(plan: Plan, stage: Stage) -> list[_Trial]:
     """Manual driving of all drivers."""
 
     def driven(participant: int) -> _Trial:
-        record = manual_record(plan.seed, participant)
+        record = manual_record(plan.seed, participant, population=plan.population)
         row, changes = measured(record)
         return _Trial(row, changes, observe(record, changes), lane_hold(record))
 
@@ -175,7 +179,7 @@ def _onsets(plan: Plan, stage: Stage) -> list[OnsetTest]:
     amount = min(plan.num_drivers, MOST_ONSETS)
     with stage("corrections", amount) as advance:
         return in_threads(
-            lambda number: onset_test(plan.seed, number),
+            lambda number: onset_test(plan.seed, number, population=plan.population),
             range(1, amount + 1),
             plan.jobs,
             advance,
@@ -185,7 +189,7 @@ def _onsets(plan: Plan, stage: Stage) -> list[OnsetTest]:
 def _arms(plan: Plan, stage: Stage) -> list[ArmTest]:
     """The arms of the drivers of manual driving."""
     drivers = [
-        participant_driver(plan.seed, number, SPEED)
+        participant_driver(plan.seed, number, SPEED, plan.population)
         for number in range(1, plan.num_drivers + 1)
     ]
     with stage("arms", 1) as advance:
@@ -198,10 +202,12 @@ def _resistance(plan: Plan, stage: Stage) -> list[Resistance]:
     """Pilot drivers against a wrong guidance: no driver of a study is looked at."""
     amount = min(plan.num_drivers, MOST_PILOTS)
     with stage("wrong guidance", NUM_CELLS * amount) as advance:
-        return resist(PILOT_SEED, amount, plan.jobs, advance)
+        return resist(PILOT_SEED, amount, plan.jobs, advance, plan.population)
 
 
 def _stability(plan: Plan, stage: Stage) -> Stability:
     amount = STABLE_FOLD * plan.num_drivers
     with stage("stability", amount) as advance:
-        return driver_stability(plan.seed, amount, plan.jobs, advance)
+        return driver_stability(
+            plan.seed, amount, plan.jobs, advance, population=plan.population
+        )

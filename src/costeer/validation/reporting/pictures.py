@@ -67,6 +67,6 @@ def _population(evidence: Evidence) -> Exhibit:
         title="Parameters of the drivers and what goes together",
         caption="Histograms over the drivers with their median; correlations of the "
         "traits behind them, and the factors that they share.",
-        description=parameters_description(evidence.population),
-        figure=draw_parameters(evidence.population),
+        description=parameters_description(evidence.drawn),
+        figure=draw_parameters(evidence.drawn),
     )

@@ -6,12 +6,12 @@ from costeer.drivers.traits import FACTORS
 from costeer.pages.numerals import signed
 from costeer.pages.tables import Table
 from costeer.validation.drawn import distribution_told, spreads
-from costeer.validation.drawn_figure import Population, spoken
+from costeer.validation.drawn_figure import Drawn, spoken
 from costeer.validation.reporting.target_tables import wrapped
 from costeer.validation.reporting.words import short
 
 
-def parameters_table(population: Population) -> Table:
+def parameters_table(drawn: Drawn) -> Table:
     """Return what differs between drivers, with its distribution."""
     return Table(
         name="parameters",
@@ -25,10 +25,10 @@ def parameters_table(population: Population) -> Table:
             (
                 spoken(each.parameter).replace(".", ": "),
                 "–" if each.unit == "-" else each.unit,
-                distribution_told(each.parameter),
+                distribution_told(each.parameter, drawn.population),
                 *(short(value) for value in (each.low, each.median, each.high)),
             )
-            for each in spreads(population.drivers)
+            for each in spreads(drawn.drivers)
         ),
         num_labels=3,
     )

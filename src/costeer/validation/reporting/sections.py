@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-from costeer.drivers.population import POPULATION_VERSION
+from costeer.drivers.population import USUAL
 from costeer.pages.frame import Picture, Section
 from costeer.pages.tables import Table, versions_table
 from costeer.validation.departures import summarise
 from costeer.validation.manual import compare
 from costeer.validation.overview import overview
+from costeer.validation.populations import population_told
 from costeer.validation.reporting import (
     arm_figures,
     departures_part,
@@ -28,7 +29,10 @@ from costeer.validation.reporting.single_tables import (
     resistance_table,
     stability_table,
 )
-from costeer.validation.reporting.summary import recordings_sentence
+from costeer.validation.reporting.summary import (
+    elsewhere_sentence,
+    recordings_sentence,
+)
 from costeer.validation.reporting.target_tables import overview_table, targets_table
 
 Pictures = Mapping[str, Picture]
@@ -82,6 +86,7 @@ def _people(evidence: Evidence, drawn: Pictures) -> Section:
         "The same quantity, computed in the same way from recordings of people and "
         "from manual trials of the virtual drivers. "
         + recordings_sentence(evidence)
+        + elsewhere_sentence(evidence)
         + " Ranges were fixed before, from half of each recording.",
         people_figures.HOW_TO_READ,
     )
@@ -147,21 +152,22 @@ def _stability(evidence: Evidence) -> Section:
         return Section(name, title, ("Stability was not looked at.",), ())
     text = (
         "Does any driver swing, or leave the road? Eigenvalues of the linear loop of "
-        "driver and car, runs without noise after an offset of 0.5 m, and a manual "
-        "trial of each driver.",
+        "driver and car, runs without noise from 0.5 m beyond what the driver lets go, "
+        "and a manual trial of each driver.",
     )
     return Section(name, title, text, (stability_table(evidence.stability),))
 
 
 def _population(evidence: Evidence, drawn: Pictures) -> Section:
+    who = population_told(evidence.drawn.population).capitalize()
     text = (
-        f"Population {POPULATION_VERSION}. A driver is drawn by seed and number: "
+        f"{who}. A driver is drawn by seed and number: "
         "correlated normal traits, and from each trait a parameter, log-normal where "
         "it is positive, else normal and clipped to its range.",
     )
     items = (
         *_chosen(drawn, (pictures.POPULATION,)),
-        parameters_table(evidence.population),
+        parameters_table(evidence.drawn),
         factors_table(),
     )
     return Section("population", "The population", text, items)
@@ -169,9 +175,11 @@ def _population(evidence: Evidence, drawn: Pictures) -> Section:
 
 def _making(evidence: Evidence) -> Section:
     number = len(evidence.driving.trials)
-    seed = evidence.population.seed
+    drawn = evidence.drawn
     command = f"costeer drivers --validate --out DIR --participants {number} "
-    command += f"--seed {seed}"
+    command += f"--seed {drawn.seed}"
+    if drawn.population != USUAL:
+        command += f" --population {drawn.population.name}"
     text = (
         f"Run again: {command}, with --data DIR or COSTEER_DATA for the folder with "
         "the recordings of people. The same version, seed, number and recordings give "

@@ -159,7 +159,7 @@ def _looks(found: Stability, bounds: StabilityBounds) -> list[_Look]:
             found.swing_ratio > bounds.swing_ratio,
         ),
         _Look(
-            "0.5 m offset within 0.1 m after [s]",
+            "From 0.5 to 0.1 m beyond what is let go [s]",
             found.settling_time,
             f"at most {bounds.settling_time:g}",
             found.settling_time > bounds.settling_time,

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.axes import Axes
 
+from costeer.drivers.population import USUAL
 from costeer.pages.exhibit import Exhibit
 from costeer.pages.numerals import number
 from costeer.pages.style import (
@@ -22,7 +23,7 @@ from costeer.validation.targets import DEVIATION, MEASURES, TARGETS
 
 NAME = "test-retest"
 
-_UNITS = {target.name: target.unit for target in TARGETS}
+_UNITS = {target.name: target.unit for target in TARGETS[USUAL.domain]}
 _SHOWN = tuple(n for n, measure in MEASURES.items() if measure.statistic != DEVIATION)
 _COLUMNS = 5
 _MARGINS = Margins(

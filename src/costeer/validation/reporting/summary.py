@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from costeer.drivers.population import POPULATION_VERSION
 from costeer.pages.numerals import listed, number, percent, plural
 from costeer.validation.arms import arms_in_range
 from costeer.validation.departures import Departures, summarise
@@ -15,6 +14,7 @@ from costeer.validation.manual import (
     missed_by,
 )
 from costeer.validation.people.findings import known
+from costeer.validation.populations import population_told
 from costeer.validation.reporting.evidence import Evidence
 from costeer.validation.reporting.verdicts import (
     largest_miss,
@@ -22,6 +22,7 @@ from costeer.validation.reporting.verdicts import (
     num_met,
 )
 from costeer.validation.reporting.words import (
+    ELSEWHERE,
     MET,
     MISSED,
     NOT_KNOWN,
@@ -37,19 +38,19 @@ Point = tuple[str, str]
 
 def subtitle(evidence: Evidence) -> str:
     """Which population this is."""
+    drawn = evidence.drawn
     amount = plural(len(evidence.driving.trials), "virtual driver")
-    return (
-        f"{amount}, population {POPULATION_VERSION}, seed {evidence.population.seed}."
-    )
+    return f"{amount}, {population_told(drawn.population)}, seed {drawn.seed}."
 
 
 def looked_at(evidence: Evidence) -> list[str]:
     """What was simulated, in sentences."""
-    driving = evidence.driving
+    driving, drawn = evidence.driving, evidence.drawn
     distance = float(columns_of(driving.trials)("distance").sum()) / 1000.0
     sentences = [
-        f"{plural(len(driving.trials), 'driver')} of population {POPULATION_VERSION}, "
-        f"drawn with seed {evidence.population.seed}, drove the course of the "
+        f"{plural(len(driving.trials), 'driver')} of "
+        f"{population_told(drawn.population)}, drawn with seed {drawn.seed}, drove the "
+        "course of the "
         f"experiment manually ({number(distance, 0)} km, "
         f"{plural(len(driving.changes), 'lane change')}), and once more with other "
         "noise."
@@ -111,11 +112,25 @@ def people_sentence(evidence: Evidence) -> str:
     held = verdicts.count(MET) + len(missed)
     told = f"{verdicts.count(MET)} of {held} quantities of people are met"
     told += f"; missed: {listed(missed)}." if missed else "."
+    told += elsewhere_sentence(evidence)
     if verdicts.count(REPORTED):
         told += f" {verdicts.count(REPORTED)} more are reported without a range."
     if verdicts.count(NOT_KNOWN):
         told += f" {verdicts.count(NOT_KNOWN)} have no value of the drivers."
     return f"{told} {recordings_sentence(evidence)}"
+
+
+def elsewhere_sentence(evidence: Evidence) -> str:
+    """Which quantities are of another domain than the drivers; empty if none is."""
+    names = [e.name for e in evidence.people if real_verdict(e) == ELSEWHERE]
+    if not names:
+        return ""
+    domains = sorted({each.domain for each in evidence.people if each.elsewhere})
+    return (
+        f" {listed(names)} are of another domain ({listed(domains)}; these drivers: "
+        f"{evidence.drawn.population.domain}), and their ranges are not held against "
+        "the drivers."
+    )
 
 
 def recordings_sentence(evidence: Evidence) -> str:

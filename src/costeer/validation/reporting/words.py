@@ -17,6 +17,7 @@ from costeer.validation.people.findings import met as met_by
 MET = "met"
 MISSED = "missed"
 REPORTED = "reported"
+ELSEWHERE = "another domain"
 NOT_KNOWN = "no value"
 
 _DIGITS = 3
@@ -46,9 +47,11 @@ def _plain(limit: Real) -> str:
 
 
 def real_verdict(comparison: RealComparison) -> str:
-    """Return met, missed, reported or no value."""
+    """Return met, missed, reported, another domain or no value."""
     if not math.isfinite(value(comparison)):
         return NOT_KNOWN
+    if comparison.elsewhere:
+        return ELSEWHERE
     if not is_target(comparison):
         return REPORTED
     return MET if met_by(comparison) else MISSED
