@@ -21,7 +21,7 @@ from costeer.study.configuration import (
     trial_setup,
 )
 from costeer.study.design import Trial
-from costeer.study.folder import configuration_hash
+from costeer.study.folder import configuration_hash, opened_study, read_study
 
 SCRIPTED = StudySettings(intention="scripted")
 
@@ -166,3 +166,17 @@ def test_a_study_on_the_published_road_says_nothing_of_it() -> None:
     other = study_configuration(PUBLISHED_STUDY._replace(scenario="cut-in"))
     assert other["scenario"] == "cut-in"
     assert settings_of(other).scenario.road.length == 3000.0  # type: ignore[union-attr]
+
+
+TWO_POINT = str(Path(__file__).parents[2] / "examples" / "drivers" / "two_point.py")
+
+
+@pytest.mark.parametrize("driver", ["virtual-2", "hands-off", TWO_POINT])
+def test_a_study_of_any_driver_can_be_read_again(tmp_path: Path, driver: str) -> None:
+    settings = settings_with(drivers=(driver,))
+    with opened_study(tmp_path, study_configuration(settings), "costeer study"):
+        pass
+    configuration = read_study(tmp_path).configuration
+    assert settings_of(configuration) == settings
+    (told,) = configuration["driver_parameters"]
+    assert {"name", "version"} <= told.keys()

@@ -16,6 +16,7 @@ from costeer.controller.step import ControllerParameters
 from costeer.drivers.checked import checked_driver
 from costeer.drivers.driver import DriverParameters
 from costeer.drivers.interface import DriverModel, driver_sources
+from costeer.drivers.registry import driver_named
 from costeer.intention.predictors.chosen import Judge, chosen_predictor
 from costeer.intention.predictors.interface import Predictor
 from costeer.intention.predictors.registry import OURS
@@ -307,7 +308,7 @@ def _plugged_in(settings: StudySettings, method: AnyMethod) -> dict[str, object]
 def _told(driver: str | Driver) -> dict[str, object]:
     """What decides what a driver does: parameters, or a model's version and sources."""
     if isinstance(driver, str):
-        return {"name": driver}
+        return {"name": driver, "version": driver_named(driver).version}
     if isinstance(driver, DriverModel):
         return {
             "name": driver.name,

@@ -84,7 +84,10 @@ _KINDS = {
     "car_parameters": Kind(
         "numbers by name or null", lambda v: v is None or _PARAMETERS.holds(v)
     ),
-    "driver_parameters": Kind("a list of parameters", _list_of(_PARAMETERS.holds)),
+    "driver_parameters": Kind(
+        "a list of drivers",
+        _list_of(_values_of(lambda value: _is_text(value) or _is_nested(value))),
+    ),
     "inconsistency_threshold": _NUMBER,
     "replan_gain": _NUMBER,
     "torque_limit": _NUMBER,
