@@ -16,6 +16,7 @@ MODULES = (
     "costeer.study.rounding",
     "costeer.study.ttests",
     "costeer.training.bootstrap",
+    "costeer.training.calibration",
     "costeer.training.labels",
     "costeer.training.metrics",
     "costeer.training.operating",

@@ -179,8 +179,10 @@ def assert_mirrored(
         elif column.mirrored == "reflected":
             wanted = -3.5 * last - wanted
         scale = max(1.0, float(np.nanmax(np.abs(np.nan_to_num(wanted)))))
+        # Lanes lie elsewhere in the mirror: rounding differs, and grows while a driver
+        # lets the car drift.
         np.testing.assert_allclose(
-            there[:, place], wanted, rtol=0.0, atol=1e-9 * scale, err_msg=column.name
+            there[:, place], wanted, rtol=0.0, atol=1e-7 * scale, err_msg=column.name
         )
 
 

@@ -10,6 +10,8 @@ import pytest
 from costeer.base.bezier import path_point, quintic
 from costeer.drivers import correcting, decision, tracking
 from costeer.drivers.correcting import CorrectingParameters, CorrectingState
+from costeer.drivers.interface import Draw
+from costeer.drivers.registry import driver_named
 from costeer.loop.scenario import TrialSetup
 from costeer.loop.trial import simulate_trial
 from costeer.plant.parameters import RoadParameters
@@ -60,7 +62,7 @@ def test_a_larger_error_is_corrected_sooner_and_not_more_often_than_once_a_secon
 
 
 def test_without_a_rate_nothing_is_planned_anew() -> None:
-    assert judged(3.0, 20.0, CorrectingParameters()) == []
+    assert judged(3.0, 20.0, GATHERS._replace(evidence_rate=0.0)) == []
 
 
 @pytest.mark.parametrize(("way", "duration"), [(3.5, 6.0), (0.875, 3.0), (0.1, 2.0)])
@@ -87,11 +89,5 @@ def test_a_driver_who_plans_anew_drives_another_lane_change_with_guidance() -> N
 
 
 def test_population_2_never_plans_anew() -> None:
-    usual = simulate_trial(
-        TrialSetup(condition="strong-rapid", intention="scripted", length=1500.0)
-    )
-    off = driven(0.0)
-    rows = len(usual.columns["time"])
-    np.testing.assert_array_equal(
-        usual.columns["lateral_position"], off.columns["lateral_position"][:rows]
-    )
+    drawn = driver_named("virtual-2").parameters(Draw(seed=1, participant=1))
+    assert judged(3.0, 20.0, drawn.correcting) == []

@@ -199,7 +199,7 @@ def test_planned_duration_is_log_normal_around_the_drivers_median(
     draws = MEDIAN._replace(duration_normal=normal, preparation_normal=normal)
     planned = first_step(leader(20.0, SPEED - 3.0), draws)
     assert planned.change_duration == pytest.approx(
-        PARAMETERS.change_duration * math.exp(0.17 * normal)
+        PARAMETERS.change_duration * math.exp(0.1 * normal)
     )
     assert planned.preparation_time == pytest.approx(
         PARAMETERS.preparation_time * math.exp(0.35 * normal)

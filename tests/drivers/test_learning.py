@@ -11,7 +11,7 @@ from costeer.drivers.learning import LearningParameters, LearningState
 from costeer.drivers.reliance import RelianceParameters
 
 DT = 1.0 / 60.0
-LEARNS = LearningParameters(share=1.0)
+LEARNS = LearningParameters(share=1.0, before=0.0)
 OWN = RelianceParameters(reliance=0.6, cocontraction=2.0)
 
 
@@ -57,5 +57,6 @@ def test_every_dispute_costs_trust_once_and_it_comes_back() -> None:
 
 
 def test_without_a_share_nothing_is_learnt() -> None:
+    nobody = LEARNS._replace(share=0.0)
     for state in (LearningState(0.0, 0.5, False), LearningState(1.0, 1.0, True)):
-        assert learning.experienced(LearningParameters(), state, OWN) == OWN
+        assert learning.experienced(nobody, state, OWN) == OWN

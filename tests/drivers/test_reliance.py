@@ -82,7 +82,8 @@ def test_guidance_leads_that_brings_the_car_to_the_wanted_lane(
     )
     own = PARAMETERS._replace(leading_horizon=1.5)
     assert reliance.leads(own, car, guidance, 0.0, steered) is leads
-    assert not reliance.leads(PARAMETERS, car, guidance, 0.0, steered)
+    nobody = own._replace(leading_horizon=0.0)
+    assert not reliance.leads(nobody, car, guidance, 0.0, steered)
 
 
 def test_a_knock_shorter_than_a_reaction_leaves_the_arms_relaxed() -> None:

@@ -29,7 +29,7 @@ from costeer.sensing.measurement import Measurement
 from tests.drivers.samples import LEFT, RIGHT, driving
 
 SETUP = TrialSetup(
-    seed=3,
+    seed=5,
     condition="strong-normal",
     intention="network",
     length=3000.0,

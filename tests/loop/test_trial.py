@@ -195,7 +195,7 @@ def test_metadata_says_what_was_run() -> None:
     metadata = trial(STRONG).metadata
     assert metadata["seed"] == 3
     assert metadata["condition"] == "strong-normal"
-    assert metadata["driver"] == "virtual, population 2"
+    assert metadata["driver"] == "virtual, population 3"
     assert metadata["driver_kind"] == "virtual"
     assert metadata["record_version"] == 2
     assert metadata["intention_model_hash"] is None

@@ -131,9 +131,16 @@ def test_the_same_judgement_gives_the_same_bytes(folder: Path, tmp_path: Path) -
 
 def test_a_monotone_change_of_the_score_changes_no_verdict() -> None:
     # The rival says the same in another scale: nobody is better.
-    told = dict(outcomes(full()))
+    told = dict(outcomes(material(num_drivers=5)))
     assert told["Area under precision and recall against the others"] == (
         "Tied with The rival."
+    )
+
+
+def test_three_drivers_are_too_few_for_a_verdict() -> None:
+    told = dict(outcomes(full()))
+    assert told["Area under precision and recall against the others"] == (
+        "Not to be told from (too few drivers) The rival."
     )
 
 
