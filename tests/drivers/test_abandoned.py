@@ -138,7 +138,9 @@ def test_every_decision_of_a_fickle_driver_is_given_up_at_its_moment(
     states = behind(FICKLE, uniform, 60.0)
     assert set(phases(states)) <= {CRUISING, PREPARING, CHANGING}
     decided = [k for k, s in enumerate(states) if s.decided]
-    assert len(decided) > 3
+    if states[-1].phase != CRUISING:
+        decided.pop()  # the end comes before the last is given up
+    assert len(decided) > 2
     for k in decided:
         after = next(i for i, s in enumerate(states[k:]) if s.phase == CRUISING)
         # Each phase is left up to two steps late, and there are at most two.
