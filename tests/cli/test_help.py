@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import subprocess
 import sys
 
@@ -80,3 +81,23 @@ def test_lines_of_an_example_are_not_joined() -> None:
 def test_a_command_without_its_function_is_refused() -> None:
     with pytest.raises(AttributeError):
         load_command("costeer.cli", "validate")
+
+
+@pytest.mark.parametrize(
+    ("line", "offered"),
+    [("costeer sess", "session"), ("costeer study --partic", "--participants")],
+)
+def test_a_shell_completes_commands_and_their_options(line: str, offered: str) -> None:
+    asked = {
+        "_COSTEER_COMPLETE": "complete_bash",
+        "COMP_WORDS": line,
+        "COMP_CWORD": str(len(line.split()) - 1),
+    }
+    done = subprocess.run(
+        [sys.executable, "-m", "costeer"],
+        env={**os.environ, **asked},
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    assert done.stdout.split() == [offered]

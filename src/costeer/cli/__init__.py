@@ -63,7 +63,7 @@ class CommandGroup(LazyGroup):
     package = "costeer.cli"
 
 
-app = typer.Typer(cls=CommandGroup, rich_markup_mode=None, add_completion=False)
+app = typer.Typer(cls=CommandGroup, rich_markup_mode=None)
 
 
 def _print_version(asked: bool) -> None:
