@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import subprocess
 import sys
 
@@ -70,6 +71,19 @@ def test_help_of_a_command_ends_with_an_example(
     shown = capsys.readouterr().out
     assert "Example" in shown
     assert f"      costeer {name}" in shown
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+def test_help_of_an_option_can_be_read_by_itself(name: str) -> None:
+    texts = [
+        getattr(each, "help", None) or ""
+        for each in load_command("costeer.cli", name).params
+        if each.name != "help"
+    ]
+    # "Of the leaders." needs the option's name to be understood; "; 1." was a default.
+    fragment = re.compile(r"^(?:of|from|to|at|in|between|that)\b|; [\d.]+\.$", re.I)
+    assert [text for text in texts if fragment.search(text)] == []
+    assert [text for text in texts if not re.search(r"^\S+ .*\.$", text)] == []
 
 
 def test_lines_of_an_example_are_not_joined() -> None:

@@ -1,4 +1,4 @@
-"""`costeer doctor`: what this computer has and how to mend what is missing."""
+"""`costeer doctor`: what this computer has and how to fix what is missing."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def doctor(
         ),
     ] = False,
 ) -> None:
-    """Show what this computer has and how to mend what is missing.
+    """Show what this computer has and how to fix what is missing.
 
     The exit code is 0 if a study can run here, else 1.
 
