@@ -1,4 +1,4 @@
-"""What this computer has for costeer, and how to mend what is missing.
+"""What this computer has for costeer, and how to fix what is missing.
 
 Each check returns a `Finding`. `costeer study` needs those that are required; the
 others widen what can be done, `costeer drive` above all.

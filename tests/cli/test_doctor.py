@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import platform
 import shutil
 import socket
 import tempfile
@@ -11,11 +12,13 @@ from importlib.metadata import PackageNotFoundError
 from pathlib import Path
 from typing import NamedTuple
 
+import numpy as np
 import pytest
 
 from costeer import doctor
 from costeer.base.extras import install_command
 from costeer.cli import main
+from costeer.cli.doctor_report import secret_words, without_names
 from costeer.devices.wheels.interface import WheelDescription
 
 
@@ -192,3 +195,66 @@ def test_shared_memory_is_enough_for_a_drive_or_told(
     assert found.status == status
     assert ("--shm-size" in found.remedy) == (status == "optional")
     assert doctor.check_shared_memory(tmp_path / "none").status == "ok"
+
+
+@pytest.fixture
+def somebody(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Path:
+    """A user and a computer whose names are easily found in a text; their home."""
+    home = tmp_path / "Users" / "gwendolen"
+    home.mkdir(parents=True)
+    monkeypatch.setenv("HOME", str(home))
+    monkeypatch.setenv("USERPROFILE", str(home))
+    for name in ("LOGNAME", "USER", "LNAME", "USERNAME"):
+        monkeypatch.setenv(name, "gwendolen")
+    monkeypatch.setattr(platform, "node", lambda: "lab-seven")
+    monkeypatch.setattr(socket, "gethostname", lambda: "lab-seven.example.org")
+    monkeypatch.setattr(socket, "getfqdn", lambda: "lab-seven.example.org")
+    return home
+
+
+def test_a_bug_report_says_what_there_is_but_not_whose_or_where(
+    somebody: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    out = somebody / "study of Anna"
+    out.mkdir()
+    cache = somebody / "code"
+    monkeypatch.setattr("costeer.base.entry.cache_folder", lambda: cache)
+    assert main(["doctor", "--report", "--out", str(out)]) == 0
+    shown = capsys.readouterr().out
+    for wanted in (
+        f"Python {platform.python_version()}",
+        f"numpy {np.__version__}",
+        "Extra drive: ",
+        "Disk: ok, ",
+        "Code cache: ",
+        "Steering wheel: ",
+    ):
+        assert wanted in shown
+    for secret in ("gwendolen", "Anna", "lab-seven", str(somebody), str(Path.cwd())):
+        assert secret not in shown
+
+
+@pytest.mark.parametrize(
+    ("told", "published"),
+    [
+        ("{home}/code: Permission denied", "HOME: Permission denied"),
+        ("free at {home}/study of Anna", "free at HOME"),
+        ("driver of Gwendolen on lab-seven", "driver of USER on HOST"),
+        ("lab-seven.example.org refuses", "HOST refuses"),
+        ("no library in /opt/secret-project/lib", "no library in PATH"),
+        (r"no library in D:\secret\lib.dll", "no library in PATH"),
+        ("/dev/video0, 12.5 MB/s, 7 and/or 8", "/dev/video0, 12.5 MB/s, 7 and/or 8"),
+    ],
+)
+def test_names_and_paths_are_left_out(
+    somebody: Path, told: str, published: str
+) -> None:
+    secrets = secret_words(Path("out"))
+    assert without_names(told.format(home=somebody), secrets) == published
+
+
+def test_a_report_is_a_text_or_json_not_both(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    assert main(["doctor", "--report", "--json"]) == 2
+    assert "give one of them" in capsys.readouterr().err

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+import re
 import subprocess
 import sys
 
@@ -71,6 +73,19 @@ def test_help_of_a_command_ends_with_an_example(
     assert f"      costeer {name}" in shown
 
 
+@pytest.mark.parametrize("name", COMMANDS)
+def test_help_of_an_option_can_be_read_by_itself(name: str) -> None:
+    texts = [
+        getattr(each, "help", None) or ""
+        for each in load_command("costeer.cli", name).params
+        if each.name != "help"
+    ]
+    # "Of the leaders." needs the option's name to be understood; "; 1." was a default.
+    fragment = re.compile(r"^(?:of|from|to|at|in|between|that)\b|; [\d.]+\.$", re.I)
+    assert [text for text in texts if fragment.search(text)] == []
+    assert [text for text in texts if not re.search(r"^\S+ .*\.$", text)] == []
+
+
 def test_lines_of_an_example_are_not_joined() -> None:
     assert keep_example_lines("Do.\n\nExample:\n    a\n    b") == (
         "Do.\n\n\b\nExample:\n    a\n    b"
@@ -80,3 +95,23 @@ def test_lines_of_an_example_are_not_joined() -> None:
 def test_a_command_without_its_function_is_refused() -> None:
     with pytest.raises(AttributeError):
         load_command("costeer.cli", "validate")
+
+
+@pytest.mark.parametrize(
+    ("line", "offered"),
+    [("costeer sess", "session"), ("costeer study --partic", "--participants")],
+)
+def test_a_shell_completes_commands_and_their_options(line: str, offered: str) -> None:
+    asked = {
+        "_COSTEER_COMPLETE": "complete_bash",
+        "COMP_WORDS": line,
+        "COMP_CWORD": str(len(line.split()) - 1),
+    }
+    done = subprocess.run(
+        [sys.executable, "-m", "costeer"],
+        env={**os.environ, **asked},
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    assert done.stdout.split() == [offered]

@@ -33,23 +33,22 @@ class CommandGroup(LazyGroup):
 
     summaries = {  # noqa: RUF012  because Typer builds the class without arguments
         "study": "Run the whole experiment with virtual drivers, then the report.",
-        "simulate": "Simulate one trial, write its record and tell what happened.",
+        "simulate": "Simulate one trial, write its record and summarise what happened.",
         "drivers": "Draw, plot, validate and fit virtual drivers.",
         "parameters": "List every parameter that --set can change: value, unit, range, "
         "source.",
         "methods": "List the methods of assistance, costeer's own and installed "
         "plug-ins.",
         "train": "Fit the intention network on records.",
-        "emergencies": "Let an obstacle appear ahead, and compare what comes of it.",
+        "emergencies": "Let an obstacle appear ahead, and compare the outcomes.",
         "compare": "Compare methods of assistance on the same drivers, roads and "
         "noise.",
         "evaluate": "Judge the intention network on records or a table.",
         "analyse": "Compute driving measures from records or a table.",
-        "report": "Write tables, tests, figures and report.html of a study again.",
-        "merge": "Write tables and report of a study whose shards are all done.",
-        "sensitivity": "Find which parameters of the guidance decide what, by Sobol "
-        "indices.",
-        "drive": "Drive by yourself: wheel, gamepad or keyboard; Ctrl-C ends it.",
+        "report": "Rewrite the tables, tests, figures and report.html of a study.",
+        "merge": "Join the shards of a study, and write its tables and report.",
+        "sensitivity": "Find which guidance parameters matter most, by Sobol indices.",
+        "drive": "Drive yourself, with wheel, gamepad or keyboard; Ctrl-C ends it.",
         "session": "Run a study with people: plan, questionnaires, drives, data.",
         "scenario": "List, show, draw, make and export scenarios: roads, other cars, "
         "events.",
@@ -58,12 +57,12 @@ class CommandGroup(LazyGroup):
         "head": "Calibrate the tracker of a participant's head, or show what it sees.",
         "export": "Write a trial record in the format of other programs.",
         "bench": "Measure the speed of the control step, a trial, a batch or a drive.",
-        "doctor": "Show what this computer has and how to mend what is missing.",
+        "doctor": "Show what this computer has and how to fix what is missing.",
     }
     package = "costeer.cli"
 
 
-app = typer.Typer(cls=CommandGroup, rich_markup_mode=None, add_completion=False)
+app = typer.Typer(cls=CommandGroup, rich_markup_mode=None)
 
 
 def _print_version(asked: bool) -> None:
@@ -86,7 +85,7 @@ def costeer(
     ] = False,
     debug: Annotated[
         bool,
-        typer.Option(DEBUG, help="Show where an error came from."),
+        typer.Option(DEBUG, help="Show the traceback of an error."),
     ] = False,
 ) -> None:
     """Intention-based haptic guidance steering: simulate, study, analyse.

@@ -21,28 +21,38 @@ if TYPE_CHECKING:
 def analyse(
     files: Annotated[
         list[Path],
-        typer.Argument(help="Trial records, tables (text, Parquet, Arrow), folders."),
+        typer.Argument(
+            help="Trial records, tables (text, Parquet, Arrow) or folders of them."
+        ),
     ],
     out: Annotated[
         Path | None,
-        typer.Option(help="Write a CSV with one row for each drive instead."),
+        typer.Option(help="CSV file to write instead, with one row per drive."),
     ] = None,
     cutoff: Annotated[
         float,
         typer.Option(
             callback=at_least(0, "Hz"),
-            help="Low-pass before reversals are counted [Hz]; 0 for none.",
+            help="Cut-off of the low-pass filter before reversals are "
+            "counted [Hz]; 0 for no filter.",
         ),
     ] = 0.6,
     gap_deg: Annotated[
         float,
-        typer.Option(callback=positive("deg"), help="Gap of a reversal [deg]."),
+        typer.Option(
+            callback=positive("deg"),
+            help="Smallest angle that counts as a reversal [deg].",
+        ),
     ] = 3.0,
     any_lane: Annotated[
         bool,
-        typer.Option("--any-lane", help="Measure lane keeping in whichever lane."),
+        typer.Option(
+            "--any-lane", help="Measure lane keeping in whichever lane the car is."
+        ),
     ] = False,
-    json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
+    json: Annotated[
+        bool, typer.Option("--json", help="Print the results as JSON.")
+    ] = False,
     told: Told = AS_FOUND,
 ) -> int | None:
     """Compute driving measures from records or a table.

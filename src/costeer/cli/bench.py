@@ -25,25 +25,31 @@ CHECKOUT = Path(__file__).parents[3]
 
 def bench(
     quick: Annotated[
-        bool, typer.Option("--quick", help="Fewer rounds and shorter trials.")
+        bool, typer.Option("--quick", help="Run fewer rounds and shorter trials.")
     ] = False,
     drive: Annotated[
-        bool, typer.Option("--drive", help="How well a drive keeps time, instead.")
+        bool,
+        typer.Option("--drive", help="Measure how well a drive keeps time instead."),
     ] = False,
     seconds: Annotated[
         float,
-        typer.Option(callback=in_range(5, 36_000), help="With --drive: how long [s]."),
+        typer.Option(callback=in_range(5, 36_000), help="With --drive: duration [s]."),
     ] = 60.0,
     browser: Annotated[
         str,
-        typer.Option(help="With --drive: Chromium that draws the page meanwhile."),
+        typer.Option(
+            help="With --drive: Chromium binary that draws the page meanwhile."
+        ),
     ] = "",
-    json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
+    json: Annotated[
+        bool, typer.Option("--json", help="Print the results as JSON.")
+    ] = False,
 ) -> None:
     """Measure the speed of the control step, a trial, a batch or a drive.
 
-    Each number is the median of some rounds, with the lowest and the highest. Runs in
-    a clone of the repository; peers come with the extra `bench`, or with `make bench`.
+    Each number is the median of several rounds, with the lowest and the highest. Runs
+    in a clone of the repository; peers come with the extra `bench`, or with `make
+    bench`.
 
     Example:
         costeer bench

@@ -30,33 +30,42 @@ if TYPE_CHECKING:
 
 def compare(
     out: Annotated[
-        Path, typer.Option(help="Folder to write; an unfinished one is resumed.")
+        Path,
+        typer.Option(help="Folder of the comparison; an unfinished one is resumed."),
     ],
     methods: Annotated[
         str,
         typer.Option(
-            help="Names of `costeer methods` with commas between, FILE.py or "
-            "module:object among them."
+            help="Methods to compare, separated by commas: names from "
+            "`costeer methods`, FILE.py or module:object."
         ),
     ] = "all",
     scenarios: Annotated[
         str | None,
         typer.Option(
-            help="Names of costeer scenario list, or FILE.yaml, with commas between.",
+            help="Scenarios to drive, separated by commas: names from "
+            "`costeer scenario list`, or FILE.yaml.",
             show_default="six of them",
         ),
     ] = None,
     mistakes: Annotated[
-        str, typer.Option(help="Names with commas between, or all; one at a time.")
+        str,
+        typer.Option(
+            help="Mistakes to make on purpose, separated by commas, or all; "
+            "each trial has one at most."
+        ),
     ] = "none",
     participants: Annotated[int, typer.Option(help="Number of virtual drivers.")] = 50,
-    seed: Annotated[int, typer.Option(help="Of drivers, traffic and noise.")] = 1,
+    seed: Annotated[int, typer.Option(help="Seed of drivers, traffic and noise.")] = 1,
     condition: Annotated[
         str, typer.Option(help="Strength and lane-change duration of the guidance.")
     ] = "strong-normal",
     intention: Annotated[
         str,
-        typer.Option(help="scripted (the driver's plan is known), network or off."),
+        typer.Option(
+            help="What tells the system of a lane change: scripted (the "
+            "driver's own plan), network or off."
+        ),
     ] = "scripted",
     length: Annotated[
         float | None,
@@ -64,12 +73,15 @@ def compare(
             parser=parse_length,
             show_default="of each scenario",
             metavar="LENGTH",
-            help="Of every course [m], or with its unit: 3km.",
+            help="Length of every course [m], or with a unit, such as 3km.",
         ),
     ] = None,
     jobs: Annotated[
         int | None,
-        typer.Option(help="Blocks of drivers at a time; as many as processors."),
+        typer.Option(
+            help="Number of blocks of drivers run in parallel; by default "
+            "one per processor."
+        ),
     ] = None,
     cluster: Cluster = "",
     shard: ShardOption = "",
@@ -79,10 +91,11 @@ def compare(
 ) -> None:
     """Compare methods of assistance on the same drivers, roads and noise.
 
-    Every method meets every driver, scenario and mistake: the differences are paired.
-    Writes a report with winners and ties, effects, trade-offs and worst cases, and a
-    row for each trial. Stop it with Ctrl-C or kill it: the same command goes on.
-    Nothing depends on --jobs, --cluster or --shard.
+    Every method drives with every driver, scenario and mistake, so that differences are
+    paired. Writes a report with winners and ties, effects, trade-offs and worst cases,
+    and a table with a row for each trial. Stop it with Ctrl-C or kill it: the same
+    command continues where it stopped. The results do not depend on --jobs, --cluster
+    or --shard.
 
     Example:
         costeer compare --out out/compare

@@ -22,25 +22,30 @@ if TYPE_CHECKING:
 
 def drive(
     condition: Annotated[
-        str, typer.Option(help="manual, or strong or weak with a duration.")
+        str,
+        typer.Option(
+            help="Condition: manual, or a strength and a duration, such as weak-gentle."
+        ),
     ] = "strong-normal",
     method: plug_ins.Method = "ibhs",
     record: Annotated[
-        Path | None, typer.Option(help="Record to write, FILE.parquet.")
+        Path | None, typer.Option(help="Trial record to write, FILE.parquet.")
     ] = None,
     wheel: Annotated[
         str,
         typer.Option(
-            help="auto (a wheel if there is a calibrated one), keyboard, gamepad, "
-            "simulated[:keys, :virtual or :FILE.csv], a number of `costeer wheel "
-            "list`, or can:BUS:CHANNEL."
+            help="What steers: auto (a calibrated wheel if there is one), "
+            "keyboard, gamepad, simulated[:keys, :virtual or "
+            ":FILE.csv], a number from `costeer wheel list`, or "
+            "can:BUS:CHANNEL."
         ),
     ] = "auto",
     head: Annotated[
         str,
         typer.Option(
-            help="none, calibrated (as `costeer head calibrate` left it), webcam[:N or "
-            "FILE], lsl:NAME or opentrack[:PORT]."
+            help="Head tracker: none, calibrated (the one set up by `costeer"
+            " head calibrate`), webcam[:N or FILE], lsl:NAME or "
+            "opentrack[:PORT]."
         ),
     ] = "none",
     intention: Annotated[
@@ -48,9 +53,13 @@ def drive(
         typer.Option(help="What starts a lane change: network, indicator or off."),
     ] = "network",
     participant: Annotated[
-        str, typer.Option(help="Pseudonym; picks the calibration of the head.")
+        str,
+        typer.Option(
+            help="Pseudonym of the participant; selects the calibration of "
+            "the head tracker."
+        ),
     ] = "1",
-    seed: Annotated[int, typer.Option(help="Of the leaders.")] = 1,
+    seed: Annotated[int, typer.Option(help="Seed of the leading cars.")] = 1,
     scenario: plug_ins.Scenario = "expressway",
     length: plug_ins.Length = None,
     speed: plug_ins.Speed = None,
@@ -60,30 +69,41 @@ def drive(
     assignments: plug_ins.Assignments = None,
     parameters: plug_ins.ParameterFile = None,
     events: Annotated[
-        bool, typer.Option("--events/--no-events", help="Leaders to overtake.")
+        bool,
+        typer.Option(
+            "--events/--no-events", help="Place slower cars ahead, to be overtaken."
+        ),
     ] = True,
     cruise: Annotated[
         bool,
         typer.Option(
-            "--cruise/--no-cruise", help="Keep the speed while no pedal is pressed."
+            "--cruise/--no-cruise", help="Hold the speed while no pedal is pressed."
         ),
     ] = True,
     signals: Annotated[
         bool,
-        typer.Option("--signals/--no-signals", help="Signals on the driver's page."),
+        typer.Option(
+            "--signals/--no-signals", help="Show signals on the driver's page."
+        ),
     ] = True,
     lsl: Annotated[
-        bool, typer.Option("--lsl", help="Send state and markers to LSL.")
+        bool,
+        typer.Option("--lsl", help="Send state and markers to Lab Streaming Layer."),
     ] = False,
-    port: Annotated[int, typer.Option(help="Of the page; 0 takes any free.")] = 8700,
+    port: Annotated[
+        int, typer.Option(help="Port of the page; 0 takes any free one.")
+    ] = 8700,
     host: Annotated[
-        str, typer.Option(help="To listen on; others than this computer need a token.")
+        str,
+        typer.Option(
+            help="Address to listen on; anything but this computer requires a token."
+        ),
     ] = "127.0.0.1",
     browser: Annotated[
-        bool, typer.Option("--browser/--no-browser", help="Open the page.")
+        bool, typer.Option("--browser/--no-browser", help="Open the page in a browser.")
     ] = True,
 ) -> None:
-    """Drive by yourself: wheel, gamepad or keyboard; Ctrl-C ends it.
+    """Drive yourself, with wheel, gamepad or keyboard; Ctrl-C ends it.
 
     Example:
         costeer drive

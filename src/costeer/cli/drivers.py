@@ -76,32 +76,45 @@ _TASKS = {
 @reads_tables
 def drivers(
     validate: Annotated[
-        bool, typer.Option("--validate", help="Drive manually; M1 to M12.")
+        bool,
+        typer.Option(
+            "--validate",
+            help="Let the population drive manually and print measures M1 to M12.",
+        ),
     ] = False,
     out: Annotated[
         Path | None,
         typer.Option(
-            help="With --validate: folder of the report; with --fit: FILE.yaml of the "
-            "driver."
+            help="With --validate: folder of the report to write; with "
+            "--fit: FILE.yaml for the fitted driver."
         ),
     ] = None,
     data: Annotated[
         Path | None,
-        typer.Option(help="With --out: recordings of people; COSTEER_DATA."),
+        typer.Option(
+            help="With --out: folder with recordings of people; by default "
+            "that of COSTEER_DATA."
+        ),
     ] = None,
     fit: Annotated[
-        Path | None, typer.Option(help="Fit a driver to the recording FILE.")
+        Path | None, typer.Option(help="Recording to fit a driver to.")
     ] = None,
     car: Annotated[
         str | None,
-        typer.Option(help="With --fit: that was driven, a name or FILE.yaml."),
+        typer.Option(help="With --fit: car that was driven, a name or FILE.yaml."),
     ] = None,
     threshold: Annotated[
-        bool, typer.Option("--threshold", help="Compute δ from pilot drivers.")
+        bool,
+        typer.Option(
+            "--threshold",
+            help="Compute the inconsistency threshold δ from pilot drivers.",
+        ),
     ] = False,
     plot: Annotated[
         Path | None,
-        typer.Option(help="Draw into FILE.svg: the population, its driving, or a fit."),
+        typer.Option(
+            help="FILE.svg to draw the population, its driving or a fit into."
+        ),
     ] = None,
     population: Annotated[
         str | None,
@@ -112,34 +125,44 @@ def drivers(
     ] = None,
     participants: Annotated[
         int | None,
-        typer.Option(callback=in_range(1, 100_000), help="Drivers; 200, as pilots 30."),
+        typer.Option(
+            callback=in_range(1, 100_000),
+            help="Number of drivers; by default 200, or 30 pilot drivers.",
+        ),
     ] = None,
     seed: Annotated[
-        int | None, typer.Option(callback=at_least(0), help="Of the population; 1.")
+        int | None,
+        typer.Option(
+            callback=at_least(0), help="Seed of the population; by default 1."
+        ),
     ] = None,
     speed: Annotated[
         float | None,
         typer.Option(
             parser=parse_speed,
             metavar="SPEED",
-            help="Suggested, for the list [m/s], or with its unit; 70km/h.",
+            help="Suggested speed for the list [m/s], or with a unit; by "
+            "default 70km/h.",
         ),
     ] = None,
     jobs: Annotated[
         int | None,
         typer.Option(
-            callback=in_range(1, 256), help="Trials at a time; as many as processors."
+            callback=in_range(1, 256),
+            help="Number of trials run in parallel; by default one per processor.",
         ),
     ] = None,
-    json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
+    json: Annotated[
+        bool, typer.Option("--json", help="Print the results as JSON.")
+    ] = False,
     told: Told = AS_FOUND,
 ) -> None:
     """Draw, plot, validate and fit virtual drivers.
 
-    Without flags it lists what is drawn for a population, and --plot draws that.
-    With --validate the population drives manually, --plot draws how, and --out
-    writes the whole report beside people. Calibration looks at manual driving only;
-    what guidance does to these drivers is a prediction.
+    Without options it lists what differs between the drivers of a population, and
+    --plot draws it. With --validate the population drives manually: --plot draws how,
+    and --out writes a full report that compares it with people. The drivers are
+    calibrated on manual driving only; how they respond to guidance is a prediction.
 
     Example:
         costeer drivers --participants 12 --seed 1 --plot out/population.svg

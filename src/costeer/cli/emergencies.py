@@ -13,20 +13,25 @@ from costeer.cli.validate import at_least, in_range
 
 
 def emergencies(
-    out: Annotated[Path, typer.Option(help="Folder to write.")],
+    out: Annotated[
+        Path, typer.Option(help="Folder for report, table, figures and records.")
+    ],
     drivers: Annotated[
-        int, typer.Option(callback=in_range(1, 1000), help="How many virtual drivers.")
+        int, typer.Option(callback=in_range(1, 1000), help="Number of virtual drivers.")
     ] = 10,
-    seed: Annotated[int, typer.Option(help="Of drivers and noise.")] = 1,
+    seed: Annotated[int, typer.Option(help="Seed of drivers and noise.")] = 1,
     conditions: Annotated[
-        str, typer.Option(help="Separated by commas.")
+        str, typer.Option(help="Conditions to drive, separated by commas.")
     ] = "manual,weak-normal,strong-normal",
     method: Method = "ibhs",
     jobs: Annotated[
-        int | None, typer.Option(callback=at_least(1), help="Threads; all cores.")
+        int | None,
+        typer.Option(
+            callback=at_least(1), help="Number of threads; by default one per core."
+        ),
     ] = None,
 ) -> None:
-    """Let an obstacle appear ahead, and compare what comes of it.
+    """Let an obstacle appear ahead, and compare the outcomes.
 
     The four situations of the paper's Sec. V-C, at 70 and 90 km/h, 1.5 to 4 s before
     the obstacle, with the other lane free or not. Writes a report, a table with a row

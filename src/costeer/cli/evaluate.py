@@ -65,87 +65,107 @@ _TRIGGERS = (
 def evaluate(
     files: Annotated[
         list[Path] | None,
-        typer.Argument(help="Trial records, tables (text, Parquet, Arrow)."),
+        typer.Argument(help="Trial records or tables (text, Parquet, Arrow)."),
     ] = None,
     weights: Annotated[
-        Path | None, typer.Option(help="File of `costeer train`; else the shipped one.")
+        Path | None,
+        typer.Option(
+            help="Weights written by `costeer train`; by default those that "
+            "ship with costeer."
+        ),
     ] = None,
     predictor: Annotated[
         str,
         typer.Option(
-            help="Which predictor to judge: gru is costeer's own; or module:object, "
-            "FILE.py."
+            help="Predictor to judge: gru (costeer's own), another name, "
+            "module:object or FILE.py."
         ),
     ] = OURS,
     compare: Annotated[
-        bool, typer.Option("--compare", help="Put all predictors beside it.")
+        bool, typer.Option("--compare", help="Judge all other predictors as well.")
     ] = False,
     without: Annotated[
         list[str] | None,
-        typer.Option(metavar="SIGNAL", help="Take a signal away; may be repeated."),
+        typer.Option(
+            metavar="SIGNAL", help="Signal to withhold from the predictor; repeatable."
+        ),
     ] = None,
     ablations: Annotated[
-        bool, typer.Option("--ablations", help="Take signals away in turn.")
+        bool,
+        typer.Option("--ablations", help="Withhold the signals one after the other."),
     ] = False,
     simulate: Annotated[
         int | None,
         typer.Option(
-            help="Judge on so many simulated drivers who trained nothing.",
+            help="Number of simulated drivers to judge on, none of whom was "
+            "trained on.",
             callback=in_range(1, 10_000),
         ),
     ] = None,
     seed: Annotated[
-        int | None, typer.Option(help="Of --simulate; 1.", callback=at_least(0))
+        int | None,
+        typer.Option(
+            help="Seed of the simulated drivers; by default 1.", callback=at_least(0)
+        ),
     ] = None,
     scenario: Annotated[
         str | None,
         typer.Option(
             metavar="NAME|FILE",
-            help="With --simulate: drive there, at its own speed; else on the "
-            "published road at several.",
+            help="With --simulate: scenario to drive, at its own speed; by "
+            "default the published road at several speeds.",
         ),
     ] = None,
     dataset: Annotated[
-        str | None, typer.Option(help="Judge on a set of real driving, as ngsim_lc.")
+        str | None,
+        typer.Option(help="Data set of real driving to judge on, such as ngsim_lc."),
     ] = None,
     data: Annotated[
         Path | None,
-        typer.Option(help="With --dataset: folder of the sets; COSTEER_DATA."),
+        typer.Option(
+            help="With --dataset: folder that holds the data sets; by "
+            "default that of COSTEER_DATA."
+        ),
     ] = None,
     resample: Annotated[
         bool,
         typer.Option(
-            "--resample", help="Bring tables of another rate to 60 Hz, a row late."
+            "--resample",
+            help="Resample tables of another rate to 60 Hz, which delays "
+            "them by a row.",
         ),
     ] = False,
     threshold: Annotated[
         float | None,
         typer.Option(
-            help="Positive from this probability on; that of the weights, else 0.5.",
+            help="Probability from which a prediction is positive; by "
+            "default that stored with the weights, else 0.5.",
             callback=fraction(),
         ),
     ] = None,
     false_per_km: Annotated[
         float,
         typer.Option(
-            help="False triggers a kilometre at which lead times are compared.",
+            help="False triggers per kilometre at which lead times are compared.",
             callback=positive("per km"),
         ),
     ] = 0.05,
     out: Annotated[
-        Path | None, typer.Option(help="Folder of report, figures and tables.")
+        Path | None, typer.Option(help="Folder for report, figures and tables.")
     ] = None,
-    json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
+    json: Annotated[
+        bool, typer.Option("--json", help="Print the results as JSON.")
+    ] = False,
     cluster: Cluster = "",
     told: Told = AS_FOUND,
 ) -> None:
     """Judge the intention network on records or a table.
 
-    A table has the names of a trial record: time, lane, head_yaw,
+    A table has the columns of a trial record: time, lane, head_yaw,
     longitudinal_acceleration, longitudinal_velocity, steering_wheel_angle,
-    distance_to_adjacent_lane, yaw_angle, at 60 rows a second; if wanted sequence
+    distance_to_adjacent_lane, yaw_angle, at 60 rows a second; optionally sequence
     (separate stretches), participant, and crossing (-1, 0, +1 at a crossing). Signals
-    may be missing: the command says which, and which variant of the network speaks.
+    may be missing: the command says which, and which variant of the network is used.
 
     Example:
         costeer evaluate out/study/records/01-manual.parquet --json

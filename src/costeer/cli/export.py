@@ -18,16 +18,17 @@ FORMATS = {"mcap": ".mcap", "parquet": ".parquet"}
 
 def export(
     file: Annotated[
-        Path, typer.Argument(help="Trial record, table, or stream of a cut-off drive.")
+        Path,
+        typer.Argument(help="Trial record, table, or stream of an interrupted drive."),
     ],
     out: Annotated[Path, typer.Option(help="File to write.")],
-    to: Annotated[str, typer.Option(help="Format: mcap or parquet.")] = "mcap",
+    to: Annotated[str, typer.Option(help="Format to write: mcap or parquet.")] = "mcap",
 ) -> None:
     """Write a trial record in the format of other programs.
 
-    MCAP with Protobuf messages opens in Foxglove, PlotJuggler and rerun. Parquet makes
-    a trial record of the stream that a drive left which was cut off; of one whose name
-    ends in .wheel.arrow, the table of the wheel.
+    MCAP with Protobuf messages opens in Foxglove, PlotJuggler and rerun. Parquet turns
+    the stream of an interrupted drive into a trial record, and a stream whose name ends
+    in .wheel.arrow into the table of the wheel.
 
     Example:
         costeer export out/trial.parquet --to mcap --out out/trial.mcap

@@ -16,40 +16,58 @@ MIRROR_ANGLE = 30.0
 
 
 def head(
-    action: Annotated[str, typer.Argument(help="calibrate or test.")],
+    action: Annotated[str, typer.Argument(help="One of calibrate, test.")],
     participant: Annotated[
-        str | None, typer.Option(metavar="P", help="Pseudonym, as P01.")
+        str | None,
+        typer.Option(metavar="P", help="Pseudonym of the participant, such as P01."),
     ] = None,
     camera: Annotated[
         str | None,
-        typer.Option(metavar="N|FILE", help="Webcam by its number, or a video; 0."),
+        typer.Option(
+            metavar="N|FILE",
+            help="Number of the webcam, or a video file; by default 0.",
+        ),
     ] = None,
     lsl: Annotated[
         str | None,
-        typer.Option(metavar="NAME", help="Stream of a professional tracker."),
+        typer.Option(
+            metavar="NAME", help="Name of the LSL stream of a professional tracker."
+        ),
     ] = None,
     opentrack: Annotated[
-        str | None, typer.Option(metavar="PORT", help="Port of opentrack, as 4242.")
+        str | None,
+        typer.Option(metavar="PORT", help="Port of opentrack, such as 4242."),
     ] = None,
     channel: Annotated[
-        str | None, typer.Option(help="With --lsl: label of the yaw's channel.")
+        str | None,
+        typer.Option(help="With --lsl: label of the channel that holds the yaw."),
     ] = None,
     unit: Annotated[
-        str | None, typer.Option(help="With --lsl: rad or deg, if it does not say.")
+        str | None,
+        typer.Option(
+            help="With --lsl: unit, rad or deg, if the stream does not state it."
+        ),
     ] = None,
     validity: Annotated[
         str | None,
-        typer.Option(help="With --lsl: label of a channel, above 0.5 if valid."),
+        typer.Option(
+            help="With --lsl: label of a channel that is above 0.5 while the"
+            " yaw is valid."
+        ),
     ] = None,
     mirrored: Annotated[
-        bool, typer.Option("--mirrored", help="The tracker counts right as positive.")
+        bool,
+        typer.Option(
+            "--mirrored", help="The tracker counts yaw to the right as positive."
+        ),
     ] = False,
     left: Annotated[
         float | None,
         typer.Option(
             metavar="DEG",
             callback=in_range(10, 60),
-            help="With calibrate: left mirror from straight ahead [deg]; 30.",
+            help="With calibrate: angle from straight ahead to the left "
+            "mirror [deg]; by default 30.",
         ),
     ] = None,
     right: Annotated[
@@ -57,19 +75,22 @@ def head(
         typer.Option(
             metavar="DEG",
             callback=in_range(10, 60),
-            help="With calibrate: right mirror from straight ahead [deg]; 30.",
+            help="With calibrate: angle from straight ahead to the right "
+            "mirror [deg]; by default 30.",
         ),
     ] = None,
     seconds: Annotated[
         float | None,
-        typer.Option(callback=in_range(0.1, 3600), help="With test: how long [s]; 5."),
+        typer.Option(
+            callback=in_range(0.1, 3600), help="With test: duration [s]; by default 5."
+        ),
     ] = None,
 ) -> None:
     """Calibrate the tracker of a participant's head, or show what it sees.
 
-    The calibration asks for three looks: straight ahead, left mirror, right mirror.
-    Stored are the straight line through them and the tracker's name; no picture is.
-    With --participant alone, test uses what was calibrated.
+    The calibration asks for three looks: straight ahead, left mirror, right mirror. It
+    stores the straight line through them and the tracker's name, and never a picture.
+    With --participant alone, test uses the stored calibration.
 
     Example:
         costeer head calibrate --participant P01 --camera 0

@@ -15,20 +15,24 @@ from costeer.cli.scaled import FAILED, end_if_failed
 def merge(
     folders: Annotated[
         list[Path],
-        typer.Argument(help="Folder that the shards shared, or those of each."),
+        typer.Argument(
+            help="Folder that the shards shared, or the folder of each shard."
+        ),
     ],
     out: Annotated[
-        Path | None, typer.Option(help="Folder for the whole, of several.")
+        Path | None,
+        typer.Option(help="Folder to write the whole into, if several are given."),
     ] = None,
     report: Annotated[
-        bool, typer.Option(help="Tests, figures and report.html after the tables.")
+        bool,
+        typer.Option(help="Write tests, figures and report.html after the tables."),
     ] = True,
 ) -> None:
-    """Write tables and report of a study whose shards are all done.
+    """Join the shards of a study, and write its tables and report.
 
-    Of a comparison and of a sensitivity analysis too. What is missing is named. What
-    two folders have is taken once if its bytes are the same, and refused if they are
-    not. What is written is the same, byte for byte, as of one process.
+    Comparisons and sensitivity analyses are merged as well. Missing parts are named.
+    What two folders share is taken once if it is identical, and refused if it is not.
+    The result is the same, byte for byte, as that of a single process.
 
     Example:
         costeer merge out/study

@@ -20,17 +20,19 @@ def methods(
         str,
         typer.Option(
             metavar="NAME",
-            help="One of them with its own parameters: a name, module:object or "
-            "FILE.py.",
+            help="Method to show with its own parameters: a name, "
+            "module:object or FILE.py.",
         ),
     ] = "",
-    json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
+    json: Annotated[
+        bool, typer.Option("--json", help="Print the results as JSON.")
+    ] = False,
 ) -> None:
     """List the methods of assistance, costeer's own and installed plug-ins.
 
-    Says of each what its law is, whether it needs the driver's intention (a predictor,
-    or --intention scripted) or the indicator to know of a lane change, and where it is
-    published. A plug-in that cannot be used is named with the reason.
+    For each method it says what its law is, how it learns of a lane change (from the
+    driver's intention, by a predictor or --intention scripted, or from the indicator),
+    and where it is published. A plug-in that cannot be used is listed with the reason.
 
     Example:
         costeer methods

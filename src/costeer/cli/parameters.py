@@ -18,16 +18,22 @@ if TYPE_CHECKING:
 
 def parameters(
     words: Annotated[
-        list[str] | None, typer.Argument(help="Only names that contain all of these.")
+        list[str] | None,
+        typer.Argument(help="Words, all of which a listed name contains."),
     ] = None,
     method: plug_ins.Method = "ibhs",
     condition: Annotated[
-        str, typer.Option(help="manual, or strong or weak with a duration.")
+        str,
+        typer.Option(
+            help="Condition: manual, or a strength and a duration, such as weak-gentle."
+        ),
     ] = "strong-normal",
     car: plug_ins.Car = "default",
     assignments: plug_ins.Assignments = None,
     file: plug_ins.ParameterFile = None,
-    json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
+    json: Annotated[
+        bool, typer.Option("--json", help="Print the results as JSON.")
+    ] = False,
 ) -> None:
     """List every parameter that --set can change: value, unit, range, source.
 

@@ -16,24 +16,23 @@ if TYPE_CHECKING:
 Method = Annotated[
     str,
     typer.Option(
-        help="Guidance of assisted trials: a name of `costeer methods`, "
-        "module:object or FILE.py."
+        help="Method that guides in assisted trials: a name from "
+        "`costeer methods`, module:object or FILE.py."
     ),
 ]
 Car = Annotated[
-    str, typer.Option(help="default, compact, large, or a FILE.yaml of its own.")
+    str, typer.Option(help="Car: default, compact, large, or a FILE.yaml of your own.")
 ]
 _DRIVER = (
-    "virtual, virtual-traffic, virtual-2 (drivers before), hands-off, a driver of "
-    "`costeer drivers --fit --out` (FILE.yaml), a "
-    "driver model (module:object or FILE.py), or a record whose hands are replayed "
-    "(FILE.parquet)"
+    "Driver: virtual, virtual-traffic, virtual-2 (the earlier population), hands-off, "
+    "a driver saved by `costeer drivers --fit --out` (FILE.yaml), a driver model "
+    "(module:object or FILE.py), or a record whose hands are replayed (FILE.parquet)"
 )
 Scenario = Annotated[
     str,
     typer.Option(
-        help="Road, other cars and events: a name of `costeer scenario list`, or a "
-        "FILE.yaml."
+        help="Scenario (road, other cars, events): a name from `costeer "
+        "scenario list`, or FILE.yaml."
     ),
 ]
 Mistakes = Annotated[
@@ -41,8 +40,8 @@ Mistakes = Annotated[
     typer.Option(
         "--mistake",
         metavar="NAME[=SIZE]",
-        help="Made on purpose, as late-trigger=0.8; may be repeated. `costeer scenario "
-        "mistakes` lists them.",
+        help="Mistake to make on purpose, such as late-trigger=0.8; "
+        "repeatable. `costeer scenario mistakes` lists them.",
     ),
 ]
 Length = Annotated[
@@ -51,7 +50,7 @@ Length = Annotated[
         parser=parse_length,
         show_default="of the scenario",
         metavar="LENGTH",
-        help="Of the course [m], or with its unit: 3km.",
+        help="Length of the course [m], or with a unit, such as 3km.",
     ),
 ]
 Speed = Annotated[
@@ -60,7 +59,8 @@ Speed = Annotated[
         parser=parse_speed,
         show_default="of the scenario",
         metavar="SPEED",
-        help="Suggested, and at the start [m/s], or with its unit: 70km/h.",
+        help="Suggested speed, also that at the start [m/s], or with a "
+        "unit, such as 70km/h.",
     ),
 ]
 Driver = Annotated[str, typer.Option("--driver", "--driver-file", help=f"{_DRIVER}.")]
@@ -77,25 +77,29 @@ PredictorName = Annotated[
     str,
     typer.Option(
         "--predictor",
-        help="What reads the intention: gru, another of `costeer evaluate`, "
-        "module:object or FILE.py.",
+        help="Predictor that reads the intention: gru, another that "
+        "`costeer evaluate` knows, module:object or FILE.py.",
     ),
 ]
 Weights = Annotated[
     Path | None,
-    typer.Option(help="Numbers of the predictor, FILE.npz; or a network, FILE.onnx."),
+    typer.Option(
+        help="Weights of the predictor (FILE.npz), or a whole network (FILE.onnx)."
+    ),
 ]
 Assignments = Annotated[
     list[str] | None,
     typer.Option(
         "--set",
         metavar="NAME=NUMBER",
-        help="Any parameter, as guidance.lateral_error_gain=3; may be repeated. "
-        "`costeer parameters` lists them.",
+        help="Value of any parameter, such as "
+        "guidance.lateral_error_gain=3; repeatable. `costeer "
+        "parameters` lists them.",
     ),
 ]
 ParameterFile = Annotated[
-    Path | None, typer.Option("--parameters", help="Parameters of a FILE.yaml.")
+    Path | None,
+    typer.Option("--parameters", help="FILE.yaml with values of parameters."),
 ]
 
 Values = tuple[tuple[str, float], ...]

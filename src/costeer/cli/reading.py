@@ -24,12 +24,16 @@ class Told(NamedTuple):
 
     map_file: Annotated[
         Path | None,
-        typer.Option("--map", help="YAML of names, units, scale, flip and marks."),
+        typer.Option(
+            "--map",
+            help="YAML file with names, units, scale, flip and marks of a "
+            "laboratory's columns.",
+        ),
     ] = None
     rename: Annotated[
         list[str] | None,
         typer.Option(
-            "--rename", metavar="OLD=NEW", help="Name of a column; repeatable."
+            "--rename", metavar="OLD=NEW", help="Rename a column; repeatable."
         ),
     ] = None
     scale: Annotated[
@@ -37,7 +41,8 @@ class Told(NamedTuple):
         typer.Option(
             "--scale",
             metavar="COLUMN=FACTOR",
-            help="Factor to SI units, by the new name; repeatable.",
+            help="Factor that converts a column, by its new name, to SI "
+            "units; repeatable.",
         ),
     ] = None
     sequence: Annotated[
@@ -45,14 +50,15 @@ class Told(NamedTuple):
         typer.Option(
             "--sequence",
             metavar="COLUMN",
-            help="Column that tells separate stretches apart; [default: sequence]",
+            help="Column that tells separate stretches apart; by default sequence.",
         ),
     ] = ""
     join_lanes: Annotated[
         bool,
         typer.Option(
             "--join-lanes",
-            help="The lateral position is from the centre of the lane driven in.",
+            help="Take the lateral position as measured from the centre of "
+            "the current lane.",
         ),
     ] = False
     drop_repeated: Annotated[
@@ -61,15 +67,23 @@ class Told(NamedTuple):
     ] = False
     separator: Annotated[
         str,
-        typer.Option("--separator", help="Between columns of a text; else found out."),
+        typer.Option(
+            "--separator",
+            help="Separator between columns of a text file; by default detected.",
+        ),
     ] = ""
     decimal: Annotated[
         str,
-        typer.Option("--decimal", help="Decimal mark of a text; else found out."),
+        typer.Option(
+            "--decimal", help="Decimal mark of a text file; by default detected."
+        ),
     ] = ""
     encoding: Annotated[
         str,
-        typer.Option("--encoding", help="Of a text, as cp1252; else found out."),
+        typer.Option(
+            "--encoding",
+            help="Encoding of a text file, such as cp1252; by default detected.",
+        ),
     ] = ""
 
 

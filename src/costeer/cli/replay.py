@@ -22,13 +22,16 @@ def replay(
         typer.Argument(help="Trial record, or a CSV or Parquet table in SI units."),
     ],
     port: Annotated[
-        int, typer.Option(help="Of the page; 0 takes any that is free.")
+        int, typer.Option(help="Port of the page; 0 takes any free one.")
     ] = 8700,
     host: Annotated[
-        str, typer.Option(help="To listen on; others than this computer need a token.")
+        str,
+        typer.Option(
+            help="Address to listen on; anything but this computer requires a token."
+        ),
     ] = "127.0.0.1",
     browser: Annotated[
-        bool, typer.Option("--browser/--no-browser", help="Open the page.")
+        bool, typer.Option("--browser/--no-browser", help="Open the page in a browser.")
     ] = True,
 ) -> None:
     """Show a recorded trial in the browser; Ctrl-C ends it.

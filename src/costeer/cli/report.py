@@ -23,14 +23,13 @@ def report(
         typer.Option(help="Folder of a study with virtual drivers to compare with."),
     ] = None,
 ) -> None:
-    """Write tables, tests, figures and report.html of a study again.
+    """Rewrite the tables, tests, figures and report.html of a study.
 
-    The records stay as they are; nothing is simulated. Works for virtual drivers and
-    for people, and for a study that is not finished: the folder of costeer study, of
-    costeer session, or one with records of drives whose participants are pseudonyms.
-    The folder of costeer compare as well, from its results.
-    The tables trials.csv and lane_changes.csv of a study with people that has a
-    study.yaml are not touched: they hold answers.
+    The records stay as they are, and nothing is simulated. Works for virtual drivers
+    and for people, finished or not, on the folder of costeer study, costeer session or
+    costeer compare, or on a folder with records of drives whose participants are
+    pseudonyms. The tables trials.csv and lane_changes.csv of a study with people that
+    has a study.yaml are not touched: they hold answers.
 
     Example:
         costeer report out/study

@@ -21,8 +21,9 @@ Cluster = Annotated[
     str,
     typer.Option(
         metavar="ADDRESS",
-        help="Workers elsewhere: local:N for N processes here, tcp://host:8786 of a "
-        "Dask scheduler, or ray:N, ray://host:10001.",
+        help="Run on a cluster: local:N for N processes here, "
+        "tcp://host:8786 for a Dask scheduler, ray:N or "
+        "ray://host:10001 for Ray.",
     ),
 ]
 
@@ -31,7 +32,8 @@ ShardOption = Annotated[
     typer.Option(
         "--shard",
         metavar="I/N",
-        help="Part of the work, as 3/20; slurm in a job array. Then costeer merge.",
+        help="Do one part of the work, such as 3/20, or slurm for the "
+        "part of a job array; costeer merge joins the parts.",
     ),
 ]
 

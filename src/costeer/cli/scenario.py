@@ -24,34 +24,45 @@ _USES = {
 
 def scenario(
     action: Annotated[
-        str, typer.Argument(help="list, show, preview, new, export; mistakes.")
+        str, typer.Argument(help="One of list, show, preview, new, export, mistakes.")
     ],
     target: Annotated[
         str | None,
-        typer.Argument(help="Name or FILE.yaml; with new the FILE.yaml to write."),
+        typer.Argument(
+            help="Name or FILE.yaml of a scenario; with new, the FILE.yaml to write."
+        ),
     ] = None,
     out: Annotated[
         Path | None,
         typer.Option(
-            help="With preview FILE.svg, with export FILE.xodr (OpenDRIVE); replaced."
+            help="File to write, replaced if it exists: FILE.svg with "
+            "preview, FILE.xodr (OpenDRIVE) with export."
         ),
     ] = None,
     origin: Annotated[
         str | None,
-        typer.Option("--from", metavar="NAME", help="With new: begin with this one."),
+        typer.Option(
+            "--from", metavar="NAME", help="With new: scenario to start from."
+        ),
     ] = None,
     opendrive: Annotated[
         Path | None,
-        typer.Option(metavar="FILE.xodr", help="With new: take the road of this file."),
+        typer.Option(
+            metavar="FILE.xodr", help="With new: OpenDRIVE file to take the road from."
+        ),
     ] = None,
     road: Annotated[
         str | None,
-        typer.Option(metavar="ID", help="With --opendrive: which road, if several."),
+        typer.Option(
+            metavar="ID", help="With --opendrive: road to take, if there are several."
+        ),
     ] = None,
     against: Annotated[
         bool,
         typer.Option(
-            "--against", help="With --opendrive: lanes against the reference line."
+            "--against",
+            help="With --opendrive: take the lanes that run against the "
+            "reference line.",
         ),
     ] = False,
     speed: Annotated[
@@ -59,16 +70,17 @@ def scenario(
         typer.Option(
             parser=parse_speed,
             metavar="SPEED",
-            help="With --opendrive: suggested [m/s], or with its unit: 90km/h; the "
-            "limit of the file, or what its curves allow.",
+            help="With --opendrive: suggested speed [m/s], or with a unit, "
+            "such as 90km/h; by default the file's limit, or what its "
+            "curves allow.",
         ),
     ] = None,
 ) -> None:
     """List, show, draw, make and export scenarios: roads, other cars, events.
 
-    A scenario is a short YAML file; `new` writes one to fill in, on a straight road,
-    after one that ships with costeer, or on a road of an OpenDRIVE file. `mistakes`
-    lists what can go wrong on purpose, in a scenario or by --mistake.
+    A scenario is a short YAML file. `new` writes one to edit: on a straight road, based
+    on one that ships with costeer, or on a road of an OpenDRIVE file. `mistakes` lists
+    the mistakes that can be made on purpose, in a scenario or by --mistake.
 
     Example:
         costeer scenario list

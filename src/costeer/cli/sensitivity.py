@@ -13,25 +13,34 @@ from costeer.cli.scaled import Cluster, ShardOption, chosen_shard, tell_merge
 
 def sensitivity(
     out: Annotated[
-        Path, typer.Option(help="Folder; an unfinished analysis is resumed.")
+        Path, typer.Option(help="Folder of the analysis; an unfinished one is resumed.")
     ],
     samples: Annotated[
-        int, typer.Option(help="Base samples, a power of two; times 11 are driven.")
+        int,
+        typer.Option(
+            help="Number of base samples, a power of two; 11 times as many are driven."
+        ),
     ] = 128,
-    drivers: Annotated[int, typer.Option(help="Pilot drivers for each.")] = 4,
-    length: Annotated[float, typer.Option(help="Of the course [m].")] = 4000.0,
-    seed: Annotated[int, typer.Option(help="Of the samples and intervals.")] = 1,
+    drivers: Annotated[
+        int, typer.Option(help="Number of pilot drivers for each sample.")
+    ] = 4,
+    length: Annotated[float, typer.Option(help="Length of the course [m].")] = 4000.0,
+    seed: Annotated[
+        int, typer.Option(help="Seed of the samples and the intervals.")
+    ] = 1,
     jobs: Annotated[
-        int | None, typer.Option(help="Threads; as many as processors if not given.")
+        int | None,
+        typer.Option(help="Number of threads; by default one per processor."),
     ] = None,
     cluster: Cluster = "",
     shard: ShardOption = "",
 ) -> None:
-    """Find which parameters of the guidance decide what, by Sobol indices.
+    """Find which guidance parameters matter most, by Sobol indices.
 
-    Nine of them are varied at once between bounds with sources, and driven by pilot
-    drivers who are in no study. Writes a report with curves to choose by, and tables.
-    It changes no default. Stop it with Ctrl-C: the same command goes on from there.
+    Nine parameters are varied together, between bounds with sources, and driven by
+    pilot drivers who take part in no study. Writes tables and a report with curves to
+    choose by; no default is changed. Stop it with Ctrl-C: the same command continues
+    where it stopped.
 
     Example:
         costeer sensitivity --out out/sensitivity

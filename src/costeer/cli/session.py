@@ -30,10 +30,11 @@ def session(
     folder: Annotated[Path, typer.Argument(help="Folder of the study.")],
     plan: Annotated[
         Path | None,
-        typer.Option(help="With new or power: a plan of your own."),
+        typer.Option(help="With new or power: file with a plan of your own."),
     ] = None,
     participant: Annotated[
-        str | None, typer.Option(help="With withdraw: whose data are deleted.")
+        str | None,
+        typer.Option(help="With withdraw: participant whose data are deleted."),
     ] = None,
     wheel: Annotated[
         str,
@@ -44,12 +45,12 @@ def session(
         typer.Option(help="With run: a head tracker, as in `costeer drive --help`."),
     ] = "none",
     port: Annotated[
-        int, typer.Option(help="With run: port of the pages; 0 takes any that is free.")
+        int, typer.Option(help="With run: port of the pages; 0 takes any free one.")
     ] = 8700,
     host: Annotated[
         str,
         typer.Option(
-            help="With run: address to serve pages on; other computers need a token."
+            help="With run: address to listen on; other computers need a token."
         ),
     ] = "127.0.0.1",
     browser: Annotated[
@@ -59,55 +60,67 @@ def session(
         ),
     ] = True,
     to: Annotated[
-        str, typer.Option("--format", help="With export: csv, bids, matlab, mcap, all.")
+        str,
+        typer.Option(
+            "--format", help="With export: format, one of csv, bids, matlab, mcap, all."
+        ),
     ] = "csv",
     out: Annotated[
-        Path | None, typer.Option(help="With export: a new folder to write into.")
+        Path | None, typer.Option(help="With export: new folder to write into.")
     ] = None,
     haste: Annotated[
         float | None,
         typer.Option(
-            help="With rehearse, or run --wheel simulated:virtual: how many times as "
-            "fast as the clock drives go."
+            help="With rehearse, or run --wheel simulated:virtual: how many "
+            "times faster than real time drives run."
         ),
     ] = None,
     participants: Annotated[
-        int, typer.Option(help="With rehearse: how many are simulated.")
+        int, typer.Option(help="With rehearse: number of simulated participants.")
     ] = 12,
     accidents: Annotated[
         float,
         typer.Option(
-            help="With rehearse: how many times a minute something is killed."
+            help="With rehearse: number of times per minute that something is killed."
         ),
     ] = 0.5,
     conditions: Annotated[
-        str, typer.Option(help="With rehearse: of the assisted trials, comma between.")
+        str,
+        typer.Option(
+            help="With rehearse: conditions of the assisted trials, "
+            "separated by commas."
+        ),
     ] = "",
     length: Annotated[
         float, typer.Option(help="With rehearse: length of a trial [m].")
     ] = 300.0,
     scenario: Annotated[
-        str, typer.Option(help="With rehearse: that ships with costeer.")
+        str, typer.Option(help="With rehearse: scenario that ships with costeer.")
     ] = "expressway",
     seed: Annotated[
-        int, typer.Option(help="With rehearse and power: seed of all that is random.")
+        int, typer.Option(help="With rehearse and power: seed of everything random.")
     ] = 1,
     drivers: Annotated[
-        int, typer.Option(help="With power: virtual drivers that drive the plan.")
+        int,
+        typer.Option(help="With power: number of virtual drivers who drive the plan."),
     ] = 40,
     intention: Annotated[
         str,
-        typer.Option(help="With power: who reads a lane change, network or scripted."),
+        typer.Option(
+            help="With power: what tells the system of a lane change, "
+            "network or scripted."
+        ),
     ] = "network",
 ) -> None:
     """Run a study with people: plan, questionnaires, drives, data.
 
-    `new` writes the plan of the paper's experiment into a folder; edit it, as
-    docs/session.md says. `power` predicts how many participants it takes. `run` serves
-    the participant's page and the experimenter's console and prints their addresses.
-    `status` says where everybody stands, `export` writes the data for other programs,
-    `withdraw` deletes all of a participant. `rehearse` has simulated participants go
-    through the paper's plan in a folder of its own. `costeer report` evaluates.
+    `new` writes the plan of the paper's experiment into a folder; edit it as
+    docs/session.md explains. `power` predicts how many participants are needed. `run`
+    serves the participant's page and the experimenter's console and prints their
+    addresses. `status` shows how far each participant has got, `export` writes the data
+    for other programs, `withdraw` deletes everything about a participant. `rehearse`
+    sends simulated participants through the paper's plan in a folder of its own.
+    `costeer report` evaluates the study.
 
     Example:
         costeer session new my-study

@@ -17,13 +17,18 @@ if TYPE_CHECKING:
 
 
 def simulate(
-    out: Annotated[Path, typer.Option(help="Record to write, FILE.parquet.")],
+    out: Annotated[Path, typer.Option(help="Trial record to write, FILE.parquet.")],
     condition: Annotated[
-        str, typer.Option(help="manual, or strong or weak with a duration.")
+        str,
+        typer.Option(
+            help="Condition: manual, or a strength and a duration, such as weak-gentle."
+        ),
     ] = "strong-normal",
-    seed: Annotated[int, typer.Option(help="Of driver, leaders and noise.")] = 1,
+    seed: Annotated[
+        int, typer.Option(help="Seed of driver, leading cars and noise.")
+    ] = 1,
     participant: Annotated[
-        int, typer.Option(help="Number of the driver in the population.")
+        int, typer.Option(help="Number of the driver within the population.")
     ] = 1,
     scenario: plug_ins.Scenario = "expressway",
     mistake: plug_ins.Mistakes = None,
@@ -32,7 +37,11 @@ def simulate(
     car: plug_ins.Car = "default",
     driver: plug_ins.Driver = "virtual",
     intention: Annotated[
-        str, typer.Option(help="network, scripted (the driver's own plan) or off.")
+        str,
+        typer.Option(
+            help="What tells the system of a lane change: network, scripted "
+            "(the driver's own plan) or off."
+        ),
     ] = "network",
     method: plug_ins.Method = "ibhs",
     predictor: plug_ins.PredictorName = "gru",
@@ -43,20 +52,29 @@ def simulate(
         list[float] | None,
         typer.Option(
             metavar="S",
-            help="Make the system start a lane change then, unless one is under way; "
-            "may be repeated.",
+            help="Time at which the system starts a lane change, unless one "
+            "is under way [s]; repeatable.",
         ),
     ] = None,
     events: Annotated[
         bool,
-        typer.Option("--events/--no-events", help="Leaders to overtake."),
+        typer.Option(
+            "--events/--no-events", help="Place slower cars ahead, to be overtaken."
+        ),
     ] = True,
     initial_offset: Annotated[
-        float, typer.Option(metavar="M", help="From the lane's centre at the start.")
+        float,
+        typer.Option(
+            metavar="M",
+            help="Distance from the lane centre at the start [m], positive "
+            "to the left.",
+        ),
     ] = 0.0,
-    engine: Annotated[str, typer.Option(help="numba, python or jax.")] = ("numba"),
+    engine: Annotated[
+        str, typer.Option(help="Numerical engine: numba, python or jax.")
+    ] = ("numba"),
 ) -> None:
-    """Simulate one trial, write its record and tell what happened.
+    """Simulate one trial, write its record and summarise what happened.
 
     Example:
         costeer simulate --out out/trial.parquet --condition weak-gentle

@@ -28,22 +28,31 @@ if TYPE_CHECKING:
 
 def study(
     out: Annotated[
-        Path, typer.Option(help="Folder of the study; an unfinished one is resumed.")
+        Path, typer.Option(help="Folder of the study; an unfinished study is resumed.")
     ],
     participants: Annotated[int, typer.Option(help="Number of virtual drivers.")] = 12,
     conditions: Annotated[
         str,
-        typer.Option(help="Names with commas between, such as manual,weak-gentle."),
+        typer.Option(
+            help="Conditions to drive, separated by commas, such as manual,weak-gentle."
+        ),
     ] = "all",
-    seed: Annotated[int, typer.Option(help="Of drivers, leaders and noise.")] = 1,
+    seed: Annotated[
+        int, typer.Option(help="Seed of drivers, leading cars and noise.")
+    ] = 1,
     jobs: Annotated[
         int | None,
-        typer.Option(help="Trials at a time; as many as processors if not given."),
+        typer.Option(
+            help="Number of trials run in parallel; by default one per processor."
+        ),
     ] = None,
     method: plug_ins.Method = "ibhs",
     intention: Annotated[
         str,
-        typer.Option(help="network, or scripted: the driver's decision is known."),
+        typer.Option(
+            help="What tells the system of a lane change: network, or "
+            "scripted (the driver's own decision)."
+        ),
     ] = "network",
     scenario: plug_ins.Scenario = "expressway",
     mistake: plug_ins.Mistakes = None,
@@ -56,20 +65,21 @@ def study(
     assignments: plug_ins.Assignments = None,
     parameters: plug_ins.ParameterFile = None,
     report: Annotated[
-        bool, typer.Option(help="Tests, figures and report.html after the tables.")
+        bool,
+        typer.Option(help="Write tests, figures and report.html after the tables."),
     ] = True,
     cluster: Cluster = "",
     records: Annotated[
-        bool, typer.Option(help="Keep trial records, or their measures alone.")
+        bool, typer.Option(help="Keep the record of each trial, or only its measures.")
     ] = True,
     shard: ShardOption = "",
 ) -> None:
     """Run the whole experiment with virtual drivers, then the report.
 
-    Each participant drives manually, then with guidance of each strength and
-    duration. Stop it with Ctrl-C or kill it: the same command goes on where it
-    stopped, and the results are the same. They do not depend on --jobs, --cluster or
-    --shard. A trial that fails is a row of failures.csv; the exit code is then 1.
+    Each participant drives manually, then with guidance of each strength and duration.
+    Stop it with Ctrl-C or kill it: the same command continues where it stopped, with
+    the same results. They do not depend on --jobs, --cluster or --shard. A trial that
+    fails is a row of failures.csv; the exit code is then 1.
 
     Example:
         costeer study --out out/study

@@ -56,29 +56,33 @@ def train(
     files: Annotated[
         list[Path] | None,
         typer.Argument(
-            help="Trial records, tables (text, Parquet, Arrow) to learn from."
+            help="Trial records or tables (text, Parquet, Arrow) to learn from."
         ),
     ] = None,
-    out: Annotated[Path, typer.Option(help="File of weights to write.")] = Path(
+    out: Annotated[Path, typer.Option(help="File to write the weights to.")] = Path(
         "out/intention.npz"
     ),
     simulate: Annotated[
         int,
         typer.Option(
-            help="Simulate manual trials of so many drivers.",
+            help="Number of drivers whose manual trials are simulated.",
             callback=in_range(0, 10_000),
         ),
     ] = 0,
     dataset: Annotated[
-        str | None, typer.Option(help="Learn from a set of real driving, as ngsim_lc.")
+        str | None,
+        typer.Option(help="Data set of real driving to learn from, such as ngsim_lc."),
     ] = None,
     data: Annotated[
-        Path | None, typer.Option(help="With --dataset: folder of the sets.")
+        Path | None,
+        typer.Option(help="With --dataset: folder that holds the data sets."),
     ] = None,
     resample: Annotated[
         bool,
         typer.Option(
-            "--resample", help="Bring tables of another rate to 60 Hz, a row late."
+            "--resample",
+            help="Resample tables of another rate to 60 Hz, which delays "
+            "them by a row.",
         ),
     ] = False,
     fit: Annotated[
@@ -92,53 +96,60 @@ def train(
         str | None,
         typer.Option(
             metavar="shipped|FILE",
-            help="Go on from these weights: fine-tune to the recordings.",
+            help="Weights to start from and fine-tune to the recordings.",
         ),
     ] = None,
     adapt: Annotated[
         Path | None,
         typer.Option(
             metavar="FOLDER",
-            help="Adapt to the people of these recordings, 10 min or more: fine-tune, "
-            "calibrate, set the threshold, judge on drivers left out.",
+            help="Folder with recordings, 10 min or more, of the people to "
+            "adapt to: fine-tune, calibrate, set the threshold, judge "
+            "on drivers left out.",
         ),
     ] = None,
     false_per_km: Annotated[
         float | None,
         typer.Option(
-            help="With --adapt: false triggers a kilometre that the threshold keeps "
-            "to; 0.05.",
+            help="With --adapt: false triggers per kilometre that the "
+            "threshold may allow; by default 0.05.",
             callback=positive("per km"),
         ),
     ] = None,
     seed: Annotated[
         int,
-        typer.Option(help="Of drivers, split and first weights.", callback=at_least(0)),
+        typer.Option(
+            help="Seed of drivers, split and initial weights.", callback=at_least(0)
+        ),
     ] = 1,
     hidden: Annotated[
         int | None,
         typer.Option(
-            help="Hidden units; chosen on validation drivers if not given.",
+            help="Number of hidden units; by default chosen on the validation drivers.",
             callback=in_range(1, 256),
         ),
     ] = None,
     steps: Annotated[
         int | None,
         typer.Option(
-            help="Training steps at most, per size; 0 with --adapt only calibrates.",
+            help="Largest number of training steps for each size; with "
+            "--adapt, 0 calibrates only.",
             callback=at_least(0),
         ),
     ] = None,
     jobs: Annotated[
-        int | None, typer.Option(help="Threads to simulate with.", callback=at_least(1))
+        int | None,
+        typer.Option(
+            help="Number of threads for the simulation.", callback=at_least(1)
+        ),
     ] = None,
     told: Told = AS_FOUND,
 ) -> None:
     """Fit the intention network on records.
 
-    Drivers are dealt to training, validation and test; the last judge the result. With
-    --start all recordings are learned from and nothing is judged. Needs the extra
-    `train` (JAX, Optax, scikit-learn).
+    The drivers are split into training, validation and test drivers; the last judge the
+    result. With --start all recordings are used for training and nothing is judged.
+    Needs the extra `train` (JAX, Optax, scikit-learn).
 
     Example:
         costeer train --simulate 60 --out out/intention.npz

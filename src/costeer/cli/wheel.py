@@ -13,26 +13,32 @@ _CALIBRATE_ONLY = "--peak-torque --weight --radius --range --no-turns --no-pedal
 
 
 def wheel(
-    action: Annotated[str, typer.Argument(help="list, calibrate or test.")],
+    action: Annotated[str, typer.Argument(help="One of list, calibrate, test.")],
     device: Annotated[
         int | None,
         typer.Option(
-            metavar="N", callback=at_least(1), help="Number in the list; the first."
+            metavar="N",
+            callback=at_least(1),
+            help="Number of the wheel in the list; by default the first.",
         ),
     ] = None,
     can: Annotated[
         str | None,
-        typer.Option(metavar="BUS", help="SENSO-Wheel on CAN, as pcan:PCAN_USBBUS1."),
+        typer.Option(
+            metavar="BUS", help="CAN bus of a SENSO-Wheel, such as pcan:PCAN_USBBUS1."
+        ),
     ] = None,
     simulated: Annotated[
-        bool, typer.Option("--simulated", help="A wheel that is not there, to try it.")
+        bool,
+        typer.Option("--simulated", help="Use a simulated wheel, to try the command."),
     ] = False,
     peak_torque: Annotated[
         float | None,
         typer.Option(
             metavar="NM",
             callback=in_range(0.1, 50),
-            help="With calibrate: torque at full command [N·m]; from a table.",
+            help="With calibrate: torque at full command [N·m]; by default "
+            "from a table of known devices.",
         ),
     ] = None,
     weight: Annotated[
@@ -40,7 +46,7 @@ def wheel(
         typer.Option(
             metavar="KG",
             callback=in_range(0.05, 20),
-            help="With calibrate: mass that hangs on the rim [kg].",
+            help="With calibrate: mass hung from the rim [kg].",
         ),
     ] = None,
     radius: Annotated[
@@ -57,14 +63,20 @@ def wheel(
             "--range",
             metavar="DEG",
             callback=in_range(40, 2520),
-            help="With calibrate: lock to lock, if the device tells it wrong [deg].",
+            help="With calibrate: range from lock to lock [deg], if the "
+            "device reports it wrongly.",
         ),
     ] = None,
     no_turns: Annotated[
-        bool, typer.Option("--no-turns", help="With calibrate: trust the maker's side.")
+        bool,
+        typer.Option(
+            "--no-turns",
+            help="With calibrate: trust the maker's sign of the angle "
+            "instead of asking for turns.",
+        ),
     ] = False,
     no_pedals: Annotated[
-        bool, typer.Option("--no-pedals", help="With calibrate: there are no pedals.")
+        bool, typer.Option("--no-pedals", help="With calibrate: skip the pedals.")
     ] = False,
 ) -> None:
     """List, calibrate and test steering wheels.
