@@ -43,7 +43,7 @@ class Finding(NamedTuple):
         name: What was looked at.
         status: `ok`; `missing`; or `optional`, missing but not needed by a study.
         detail: What there is.
-        remedy: How to mend it; empty if it is ok.
+        remedy: How to fix it; empty if it is ok.
     """
 
     name: str
@@ -240,7 +240,7 @@ def _lateness(duration: float) -> float:
 
 
 def check_priority() -> Finding:
-    """Whether the wheel's loop may run before all other programs."""
+    """Whether the wheel's loop may use real-time priority."""
     remedy = (
         "allow it: write `@audio - rtprio 80` for your group into "
         "/etc/security/limits.d/costeer.conf and log in again"
