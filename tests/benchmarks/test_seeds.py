@@ -20,6 +20,7 @@ PAIRS = """measure,analysis,first,second,mean_second,mean_difference,p_corrected
 sdlp,published,weak-rapid,manual,0.2,-0.02,0.001
 sdlp,within,weak-rapid,manual,0.2,{difference},{p}
 sdlp,within,weak-rapid,weak-gentle,0.2,0.5,0.001
+sdlp,published,weak-rapid,manual,0.2,-0.02,0.001
 """
 
 

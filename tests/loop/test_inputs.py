@@ -8,6 +8,7 @@ import pytest
 
 from costeer.drivers.population import participant_driver
 from costeer.loop.inputs import (
+    ABOUT,
     car_of,
     parse_assignments,
     read_car,
@@ -82,3 +83,15 @@ def test_a_large_file_is_not_parsed(tmp_path: Path) -> None:
     (tmp_path / "v.yaml").write_text("a: 1\n" * 300_000, "utf-8")
     with pytest.raises(ValueError, match=r"has 1\.5 MB, at most 1 MB are read"):
         read_values(tmp_path / "v.yaml")
+
+
+@pytest.mark.parametrize(("about", "band"), [("{population: '2'}", 0.0), ("{}", 0.006)])
+def test_a_fit_from_before_stays_the_driver_that_it_was(
+    tmp_path: Path, about: str, band: float
+) -> None:
+    file = tmp_path / "driver.yaml"
+    file.write_text(f"{ABOUT}: {about}\narm.stiffness: 14\n")
+    driver = read_driver(file)
+    assert driver.arm.stiffness == 14.0
+    assert driver.tolerance.band == band
+    assert (driver.learning.share == 0.0) is (band == 0.0)

@@ -18,7 +18,7 @@ from costeer.base.described import described, with_values
 from costeer.base.files import read_whole, write_text
 from costeer.drivers.driver import DriverParameters
 from costeer.drivers.interface import AnyDriver
-from costeer.drivers.population import population_of
+from costeer.drivers.population import SECOND, population_of
 from costeer.drivers.registry import driver_named
 from costeer.drivers.replayed import replayed_hands
 from costeer.plant.parameters import CARS, CarParameters
@@ -53,6 +53,20 @@ def read_values(path: Path) -> dict[str, Real]:
         ValueError: If it is no YAML mapping of numbers.
         OSError: If it cannot be read.
     """
+    content = _content(path)
+    content.pop(ABOUT, None)
+    values: dict[str, Real] = {}
+    _flatten(content, "", values, path)
+    return values
+
+
+def _content(path: Path) -> dict[Any, Any]:  # Any: of a file
+    """The mapping of a YAML file.
+
+    Raises:
+        ValueError: If it is none.
+        OSError: If it cannot be read.
+    """
     text = read_whole(path, _MOST)
     try:
         content = yaml.load(text.decode("utf-8"), _Words)
@@ -61,10 +75,7 @@ def read_values(path: Path) -> dict[str, Real]:
         raise ValueError(f"{path} is not YAML: {first}") from error
     if not isinstance(content, dict):
         raise ValueError(f"{path} is no list of names and numbers, as 'mass: 1500'")
-    content.pop(ABOUT, None)
-    values: dict[str, Real] = {}
-    _flatten(content, "", values, path)
-    return values
+    return content
 
 
 def _flatten(
@@ -112,11 +123,17 @@ def read_car(path: Path) -> CarParameters:
 def read_driver(path: Path) -> DriverParameters:
     """A driver of a file, as `costeer drivers --fit FILE --out` writes it.
 
+    What the file does not name is as in the usual driver of the population that it is
+    of: a fit from before there was tolerance stays the driver that it was.
+
     Raises:
         ValueError: If a name is not known or a value is out of range.
         OSError: If it cannot be read.
     """
-    return _filled(DriverParameters(), path)
+    about = _content(path).get(ABOUT)
+    told = about.get("population") if isinstance(about, dict) else None
+    old = str(told) == SECOND.version
+    return _filled(SECOND.usual if old else DriverParameters(), path)
 
 
 def driver_of(given: str | Driver) -> Driver | str:
