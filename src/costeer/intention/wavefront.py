@@ -21,23 +21,16 @@ from numpy.typing import NDArray
 from costeer.base.array import compiled
 from costeer.base.entry import entry
 from costeer.intention.features import (
-    FEATURE_LIMIT,
-    FEATURES,
-    HEAD_YAW,
     NUM_FEATURES,
     NUM_INPUTS,
-    NUM_SCALED,
     WINDOW_LENGTH,
     IntentionSample,
-    approach_velocity,
 )
 from costeer.intention.gru import NetworkWeights, without
 from costeer.intention.kernel import ROWS, TILE, advance_pair
+from costeer.intention.taking import absent_flags, scaling_of, take
 
 _CACHE_LINE = 64
-_VELOCITY = FEATURES.index("longitudinal_velocity")
-_YAW = FEATURES.index("yaw_angle")
-_APPROACH = NUM_FEATURES
 
 
 class WavefrontWeights(NamedTuple):
@@ -48,9 +41,7 @@ class WavefrontWeights(NamedTuple):
     (1 + tanh(a/2))/2, and halving is exact.
 
     Attributes:
-        feature_mean: Of the scaled signals, `(7,)`.
-        feature_scale: `(7,)`.
-        dispensable: Signals that the network can do without, `(feature,)`.
+        scaling: Of the signals, see `taking.scaling_of`, `(3, 7)`.
         input_weights: `(input, row)`.
         bias: Of input and, except for the candidate, of the state, `(row,)`.
         recurrent: `(pair, hidden, 6)`.
@@ -59,9 +50,7 @@ class WavefrontWeights(NamedTuple):
         output_bias: `(1,)`.
     """
 
-    feature_mean: NDArray[np.float64]
-    feature_scale: NDArray[np.float64]
-    dispensable: NDArray[np.bool_]
+    scaling: NDArray[np.float64]
     input_weights: NDArray[np.float32]
     bias: NDArray[np.float32]
     recurrent: NDArray[np.float32]
@@ -116,9 +105,7 @@ def wavefront_weights(weights: NetworkWeights) -> WavefrontWeights:
     size = hidden_bias.shape[1]
     by_pair = recurrent.transpose(1, 0, 2).reshape(size // 2, ROWS, size)
     return WavefrontWeights(
-        feature_mean=weights.feature_mean.astype(np.float64),
-        feature_scale=weights.feature_scale.astype(np.float64),
-        dispensable=weights.dispensable > 0.5,
+        scaling=scaling_of(weights),
         input_weights=aligned(inputs.transpose(2, 1, 0).reshape(NUM_INPUTS, -1)),
         bias=aligned(bias.T.ravel()),
         recurrent=aligned(by_pair.transpose(0, 2, 1)),
@@ -131,7 +118,6 @@ def wavefront_weights(weights: NetworkWeights) -> WavefrontWeights:
 def initial_state(
     weights: WavefrontWeights,
     absent: tuple[str, ...] = (),
-    num_lanes: int = WINDOW_LENGTH,
 ) -> WavefrontState:
     """Memory before the first sample; one per driver, never shared by threads.
 
@@ -139,21 +125,19 @@ def initial_state(
         weights: Of the network that will run.
         absent: Signals that this drive does not have; what is given for them is not
             looked at.
-        num_lanes: Window starts to hold: 180 for `advance`.
 
     Raises:
         ValueError: If the network was not trained to do without one of them.
     """
     hidden = weights.candidate_bias.shape[0]
-    num_tiles = -(-num_lanes // TILE)
-    missing = np.array([name in absent for name in FEATURES])
-    without(weights.dispensable, absent)
+    num_tiles = -(-WINDOW_LENGTH // TILE)
+    without(weights.scaling[2] > 0.5, absent)
     return WavefrontState(
         hidden=aligned(np.zeros((num_tiles, hidden, TILE), np.float32)),
         new_hidden=aligned(np.zeros((hidden, TILE), np.float32)),
         projection=aligned(np.zeros(3 * hidden, np.float32)),
         inputs=np.zeros(NUM_INPUTS, np.float32),
-        absent=missing,
+        absent=absent_flags(absent),
         counters=np.zeros(2, np.int64),
     )
 
@@ -162,54 +146,6 @@ def initial_state(
 def reset(state: WavefrontState) -> None:
     """Forget all samples."""
     state.counters[:] = 0
-
-
-@compiled
-def _deviations(value: float, mean: float, scale: float) -> float:
-    """Scale one value as features.py does; NaN is 0, its mean."""
-    deviation = (value - mean) / scale
-    held = min(max(deviation, -FEATURE_LIMIT), FEATURE_LIMIT)
-    return held if held == held else 0.0
-
-
-@compiled
-def _usable(value: float, absent: bool, may_be_lost: bool) -> bool:
-    """Whether a signal may enter: absent, finite, or lost where that is borne."""
-    return absent or math.isfinite(value) or (may_be_lost and math.isnan(value))
-
-
-@compiled
-def take(
-    weights: WavefrontWeights, state: WavefrontState, sample: IntentionSample
-) -> bool:
-    """Put signals, flags and approach velocity among the inputs; whether all may enter.
-
-    The helpers take numbers, because compiled code counts references to each array of
-    a tuple that it hands on: 0.1 us a call.
-    """
-    signals = (
-        float(sample.head_yaw),
-        float(sample.longitudinal_acceleration),
-        float(sample.longitudinal_velocity),
-        float(sample.steering_wheel_angle),
-        float(sample.distance_to_adjacent_lane),
-        float(sample.yaw_angle),
-    )
-    mean, scale, absent = weights.feature_mean, weights.feature_scale, state.absent
-    valid = True
-    for index in range(NUM_FEATURES):
-        value = signals[index]
-        missing = absent[index] or math.isnan(value)
-        known = math.nan if missing else value
-        state.inputs[index] = _deviations(known, mean[index], scale[index])
-        state.inputs[NUM_SCALED + index] = 1.0 if missing else 0.0
-        may_be_lost = index == HEAD_YAW and weights.dispensable[index]
-        valid &= _usable(value, absent[index], may_be_lost)
-    there = not (absent[_VELOCITY] or absent[_YAW])
-    velocity, yaw = signals[_VELOCITY], signals[_YAW]
-    approach = approach_velocity(velocity, yaw) if there else math.nan
-    state.inputs[_APPROACH] = _deviations(approach, mean[_APPROACH], scale[_APPROACH])
-    return valid
 
 
 @compiled
@@ -289,7 +225,7 @@ def advance(
         for signals that are absent and a head that is lost, if the network was trained
         for it.
     """
-    if not take(weights, state, sample):
+    if not take(weights.scaling, state.absent, state.inputs, sample):
         state.counters[1] = 0
         return math.nan
     return _advance_scaled(weights, state)
@@ -305,7 +241,7 @@ def _advance_over(
     for step in range(features.shape[0]):
         row = features[step]
         sample = IntentionSample(row[0], row[1], row[2], row[3], row[4], row[5])
-        if take(weights, state, sample):
+        if take(weights.scaling, state.absent, state.inputs, sample):
             probabilities[step] = _advance_scaled(weights, state)
         else:
             state.counters[1] = 0

@@ -25,6 +25,7 @@ from costeer.intention.predictors.interface import Predictor
 from costeer.intention.predictors.registry import OURS
 from costeer.loop.overrides import built, shared_values
 from costeer.loop.parameters import LoopParameters, StartParameters
+from costeer.loop.roads import check_lanes, check_road
 from costeer.loop.tick import (
     INTENTION_NETWORK,
     INTENTION_OFF,
@@ -38,7 +39,6 @@ from costeer.plant.parameters import (
     CARS,
     CarParameters,
     ColumnParameters,
-    RoadParameters,
 )
 from costeer.scenarios.definition import Scenario
 from costeer.scenarios.mistakes import (
@@ -85,6 +85,8 @@ class TrialSetup(NamedTuple):
             network itself ("gru"), another predictor by name or place, or a function
             of windows (`intention.predictors.chosen`).
         weights: File of the predictor's numbers; the shipped ones if None.
+        exact_network: The exact window gives every verdict, even if the network has
+            passed the check of its cheaper form (`loop.network`).
         trigger_times: When the system starts a lane change whatever the driver wants
             [s].
         events: Whether leaders appear.
@@ -119,6 +121,7 @@ class TrialSetup(NamedTuple):
     intention: str = "network"
     predictor: str | Predictor | Judge = OURS
     weights: str | None = None
+    exact_network: bool = False
     trigger_times: tuple[Real, ...] = ()
     events: bool = True
     initial_offset: Real = 0.0
@@ -185,8 +188,9 @@ def check_setup(setup: TrialSetup) -> None:
     _check_choice("intention", setup.intention, tuple(INTENTIONS))
     trial_condition(setup)
     method_named(setup.method)
-    if not isinstance(setup.events, bool):
-        raise ValueError(f"events is {setup.events!r}; give True or False")
+    for name in ("events", "exact_network"):
+        if not isinstance(given := getattr(setup, name), bool):
+            raise ValueError(f"{name} is {given!r}; give True or False")
     for time in setup.trigger_times:
         if not (math.isfinite(time) and time >= 0.0):
             raise ValueError(
@@ -322,36 +326,6 @@ def _wrong_values(setup: TrialSetup) -> dict[str, Real]:
     return values
 
 
-def _check_road(road: RoadParameters) -> None:
-    """Refuse a road on which nobody could change lanes.
-
-    Raises:
-        ValueError: Naming the number.
-    """
-    if road.overtaking_side not in (-1.0, 1.0):
-        raise ValueError(
-            f"road.overtaking_side is {road.overtaking_side:g}; give 1 for left or -1 "
-            "for right"
-        )
-    if road.num_lanes < 2.0 or road.num_lanes % 1.0 != 0.0:
-        raise ValueError(f"road.num_lanes is {road.num_lanes:g}; give 2 or more")
-
-
-def _check_lanes(road: RoadParameters, scenario: Scenario) -> None:
-    """Refuse a road without a lane that something in the scenario is in.
-
-    Raises:
-        ValueError: Naming it.
-    """
-    for actor in scenario.actors:
-        for lane in (actor.lane, *(each.lane for each in actor.orders)):
-            if lane is not None and lane >= road.num_lanes:
-                raise ValueError(
-                    f"road.num_lanes is {road.num_lanes:g}; {actor.name} of scenario "
-                    f"{scenario.name} is in lane {lane}, give {lane + 1} or more"
-                )
-
-
 def loop_parameters(setup: TrialSetup) -> LoopParameters[Any]:
     """All parameters of a trial.
 
@@ -388,8 +362,8 @@ def loop_parameters(setup: TrialSetup) -> LoopParameters[Any]:
     condition = trial_condition(setup)
     values = _wrong_values(setup) | dict(setup.parameters)
     parameters = built(world, chosen, condition, values)
-    _check_road(parameters.road)
-    _check_lanes(parameters.road, scenario)
+    check_road(parameters.road)
+    check_lanes(parameters.road, scenario)
     if (parameters.car, parameters.road) != (car, around.road):
         draw = draw._replace(car=parameters.car)
         fleet = fleet_on(scenario, draw, parameters.road)

@@ -17,8 +17,9 @@ from costeer.base.array import Flag, Real, compiled, inlined
 from costeer.base.packing import unpack
 from costeer.controller.signals import Request
 from costeer.drivers.interface import DriverNoise
+from costeer.intention.bracket import advance
 from costeer.intention.features import IntentionSample, facing
-from costeer.intention.wavefront import WavefrontState, WavefrontWeights, advance
+from costeer.intention.starts import BracketState, BracketWeights
 from costeer.loop.endings import has_stopped, still
 from costeer.loop.events import has_collided
 from costeer.loop.half_step import Sample
@@ -73,12 +74,12 @@ class Network(NamedTuple):
     """The intention network of a trial.
 
     Attributes:
-        weights: As the kernel takes them.
+        weights: As the kernel takes them; their band says in which form it runs.
         memory: Its windows, changed in place.
     """
 
-    weights: WavefrontWeights
-    memory: WavefrontState
+    weights: BracketWeights
+    memory: BracketState
 
 
 @compiled

@@ -17,18 +17,13 @@ from costeer.drivers.driver import DriverParameters
 from costeer.drivers.interface import AnyDriver, DriverModel, driver_sources
 from costeer.drivers.population import POPULATIONS, USUAL, VIRTUAL
 from costeer.drivers.registry import HANDS_OFF
-from costeer.intention.features import NUM_FEATURES, NUM_INPUTS, NUM_SCALED
-from costeer.intention.gru import NetworkWeights
-from costeer.intention.predictors.chosen import ChosenPredictor, chosen_predictor
+from costeer.intention.predictors.chosen import ChosenPredictor
 from costeer.intention.predictors.interface import Predictor
-from costeer.intention.predictors.registry import OURS
-from costeer.intention.wavefront import (
-    WavefrontWeights,
-    wavefront_weights,
-)
-from costeer.intention.wavefront import initial_state as network_memory
-from costeer.intention.weights import IntentionNetwork, load_weights
 from costeer.loop.endings import outcome_of
+from costeer.loop.network import idle_network as idle_network
+from costeer.loop.network import network_form, trial_network
+from costeer.loop.network import shipped_network as shipped_network
+from costeer.loop.network import trial_predictor as trial_predictor
 from costeer.loop.noise import driver_noise
 from costeer.loop.outside import Verdicts, outside_rollout
 from costeer.loop.parameters import DT, LoopParameters
@@ -43,7 +38,7 @@ from costeer.loop.scenario import (
     trial_method,
     trial_mistakes,
 )
-from costeer.loop.tick import Network, Script
+from costeer.loop.tick import Script
 from costeer.methods.interface import Method, method_sources
 from costeer.plant.fleet import num_cars
 from costeer.records import metadata as kinds
@@ -56,70 +51,6 @@ from costeer.scenarios.world import sizes_of
 
 SLOWEST_SHARE = 0.5
 """A trial ends at the latest when a car at this share of its speed would arrive."""
-
-
-@cache
-def shipped_network() -> IntentionNetwork:
-    """The network that ships with costeer, read once."""
-    return load_weights()
-
-
-@cache
-def idle_weights() -> WavefrontWeights:
-    """Two units of zeros, for trials that ask no network."""
-    units = 2
-    return wavefront_weights(
-        NetworkWeights(
-            feature_mean=np.zeros(NUM_SCALED),
-            feature_scale=np.ones(NUM_SCALED),
-            dispensable=np.zeros(NUM_FEATURES),
-            input_weights=np.zeros((3, units, NUM_INPUTS), np.float32),
-            hidden_weights=np.zeros((3, units, units), np.float32),
-            input_bias=np.zeros((3, units), np.float32),
-            hidden_bias=np.zeros((3, units), np.float32),
-            output_weights=np.zeros(units, np.float32),
-            output_bias=np.zeros(1, np.float32),
-        )
-    )
-
-
-@cache
-def _kernel_weights(digest: str, wanted: str, weights: str | None) -> WavefrontWeights:
-    """Numbers of a network as the kernel takes them, made once for each `digest`."""
-    chosen = chosen_predictor(wanted, weights).weights
-    if chosen is None:
-        raise ValueError(f"predictor {wanted} is no network")
-    return wavefront_weights(chosen)
-
-
-def trial_predictor(setup: TrialSetup) -> ChosenPredictor | None:
-    """The predictor that a trial asks; None for none.
-
-    Raises:
-        ValueError: If there is no such predictor, or its file does not fit.
-        OSError: If its file cannot be read.
-    """
-    if setup.intention != "network":
-        if setup.predictor != OURS or setup.weights is not None:
-            raise ValueError(
-                f"intention '{setup.intention}' asks no predictor; leave predictor and "
-                "weights out, or choose intention network"
-            )
-        return None
-    return chosen_predictor(setup.predictor, setup.weights)
-
-
-def _network(setup: TrialSetup, predictor: ChosenPredictor | None) -> Network:
-    """The network of a trial, or an idle one."""
-    packed = idle_weights()
-    if predictor is not None and predictor.weights is not None:
-        packed = _kernel_weights(predictor.hash, str(setup.predictor), setup.weights)
-    return Network(packed, network_memory(packed))
-
-
-def idle_network() -> Network:
-    """For trials that ask no network."""
-    return Network(idle_weights(), network_memory(idle_weights()))
 
 
 def simulate_trial(setup: TrialSetup, engine: str = "numba") -> TrialRecord:
@@ -148,7 +79,8 @@ def simulate_trial(setup: TrialSetup, engine: str = "numba") -> TrialRecord:
         horizon=setup.prediction_horizon,
         trigger_times=np.array(sorted(setup.trigger_times), dtype=np.float64),
     )
-    method, network = trial_method(setup), _network(setup, predictor)
+    method = trial_method(setup)
+    network = trial_network(setup, parameters, predictor)
     driver = trial_driver_model(setup)
     if predictor is not None and predictor.judge is not None and engine != "jax":
         advance = begun(method, parameters, network, engine, driver=driver)
@@ -222,6 +154,7 @@ def trial_metadata(
         "driver_source_hash": driver_sources(driver),
         "predictor": None if predictor is None else predictor.name,
         "intention_model_hash": None if predictor is None else predictor.hash,
+        "network_form": network_form(setup, parameters, predictor),
         **_thresholds(parameters),
         "configuration": configuration,
         "configuration_hash": hashlib.sha256(text.encode()).hexdigest(),

@@ -273,7 +273,8 @@ COLUMNS: tuple[Column, ...] = (
     _number(
         "crossing_probability",
         "-",
-        "of crossing within 3 s; NaN: no verdict",
+        "of crossing within 3 s; NaN: no verdict; where the metadata's network_form is "
+        "bracket only its side of 0.5 is exact",
         "request.crossing_probability",
     ),
     Column(

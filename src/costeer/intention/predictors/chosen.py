@@ -19,6 +19,7 @@ from costeer.base.files import read_whole
 from costeer.base.plugins import refuse_twin
 from costeer.base.registry import Registry
 from costeer.base.sources import plain, source_hash
+from costeer.intention.checked import has_passed
 from costeer.intention.features import NUM_FEATURES, WINDOW_LENGTH
 from costeer.intention.gru import NetworkWeights
 from costeer.intention.predictors.interface import Predictor
@@ -44,12 +45,14 @@ class ChosenPredictor(NamedTuple):
         hash: Of its numbers or sources.
         weights: Of a network that runs compiled; None for one that is called.
         judge: Called with each window; None for a network.
+        bracketed: Whether the network has passed the check of its bracketed form.
     """
 
     name: str
     hash: str
     weights: NetworkWeights | None = None
     judge: Judge | None = None
+    bracketed: bool = False
 
 
 def chosen_predictor(
@@ -106,7 +109,12 @@ def _shipped(wanted: str, weights: str | None, _: tuple[int, int]) -> ChosenPred
     path = None if weights is None else Path(weights)
     if wanted == OURS:
         network = load_weights(path)
-        return ChosenPredictor(OURS, network.hash, weights=network.weights)
+        return ChosenPredictor(
+            OURS,
+            network.hash,
+            weights=network.weights,
+            bracketed=has_passed(network),
+        )
     found = predictor(wanted, path)
     return ChosenPredictor(wanted, _file_hash(path), judge=_last_of(found))
 
