@@ -56,6 +56,7 @@ def simulate(
     parameters: Mapping[str, float] | None = None,
     predictor: File | Predictor | Judge = OURS,
     weights: File | None = None,
+    exact_network: bool = False,
     car: File | CarParameters = "default",
     speed: float | None = None,
     strength_factor: float = math.nan,
@@ -92,6 +93,8 @@ def simulate(
         predictor: Of crossings: its name or place, a `Predictor`, or a function from
             the last window, shape `(180, 6)`, to a probability.
         weights: File of the predictor's numbers, .npz or .onnx.
+        exact_network: Take every verdict of the network from its exact window, even if
+            it has passed the check of its cheaper form.
         car: "default", "compact", "large", parameters, or the file of one.
         speed: That the trial starts with and the driver prefers; the scenario's if
             None [m/s].
@@ -173,6 +176,7 @@ def study(
     car: File | CarParameters = "default",
     predictor: File | Predictor | Judge = OURS,
     weights: File | None = None,
+    exact_network: bool = False,
     drivers: Drivers | Sequence[Drivers] = (),
     driver: Drivers | None = None,
     parameters: Mapping[str, float] | None = None,
@@ -201,6 +205,7 @@ def study(
         predictor: What reads the intention: its name or place, a `Predictor`, or a
             function as for `simulate`; it is called in several threads.
         weights: File of its numbers, .npz or .onnx.
+        exact_network: As for `simulate`.
         drivers: A driver or the file of one, or several who take turns; none: the
             population.
         driver: One driver for all, by the name that `simulate` has for it.

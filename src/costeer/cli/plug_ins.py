@@ -87,6 +87,14 @@ Weights = Annotated[
         help="Weights of the predictor (FILE.npz), or a whole network (FILE.onnx)."
     ),
 ]
+ExactNetwork = Annotated[
+    bool,
+    typer.Option(
+        "--exact-network",
+        help="Take every verdict of the network from its exact window, even if it has "
+        "passed the check of its cheaper form.",
+    ),
+]
 Assignments = Annotated[
     list[str] | None,
     typer.Option(

@@ -46,6 +46,7 @@ def simulate(
     method: plug_ins.Method = "ibhs",
     predictor: plug_ins.PredictorName = "gru",
     weights: plug_ins.Weights = None,
+    exact_network: plug_ins.ExactNetwork = False,
     assignments: plug_ins.Assignments = None,
     parameters: plug_ins.ParameterFile = None,
     trigger_at: Annotated[
@@ -101,6 +102,7 @@ def simulate(
         intention=intention,
         predictor=predictor,
         weights=plug_ins.weights_path(weights),
+        exact_network=exact_network,
         parameters=plug_ins.values_with_threshold(
             parameters, assignments, plug_ins.Reader(predictor, weights, method)
         ),

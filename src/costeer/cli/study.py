@@ -62,6 +62,7 @@ def study(
     driver: plug_ins.Drivers = None,
     predictor: plug_ins.PredictorName = "gru",
     weights: plug_ins.Weights = None,
+    exact_network: plug_ins.ExactNetwork = False,
     assignments: plug_ins.Assignments = None,
     parameters: plug_ins.ParameterFile = None,
     report: Annotated[
@@ -108,6 +109,7 @@ def study(
             car=car,
             predictor=predictor,
             weights=plug_ins.weights_path(weights) or "",
+            exact_network=exact_network,
             drivers=tuple(driver or ()),
             parameters=plug_ins.values_with_threshold(
                 parameters, assignments, plug_ins.Reader(predictor, weights, method)

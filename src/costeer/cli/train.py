@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated, NamedTuple
 import typer
 
 from costeer.cli.adapt import SHIPPED, Adapting, adapt_to_people, start_network
+from costeer.cli.bracket_check import check_form
 from costeer.cli.reading import (
     AS_FOUND,
     Told,
@@ -143,6 +144,15 @@ def train(
             help="Number of threads for the simulation.", callback=at_least(1)
         ),
     ] = None,
+    check_kilometres: Annotated[
+        float | None,
+        typer.Option(
+            metavar="KM",
+            help="Check the cheaper form of the network's verdicts on fresh simulated "
+            "drives, such as 10000; from 1000 on the loop uses it if it passes.",
+            callback=positive("km"),
+        ),
+    ] = None,
     told: Told = AS_FOUND,
 ) -> None:
     """Fit the intention network on records.
@@ -156,9 +166,10 @@ def train(
         costeer train --simulate 60 --fit baselines --out out/baselines.npz
         costeer train drives.csv --start out/intention.npz --out out/tuned.npz
         costeer train --start shipped --adapt recordings --out out/ours.npz
+        costeer train --simulate 60 --check-kilometres 10000 --out out/intention.npz
     """
     if adapt is not None:
-        _refuse_beside_adapt(files, simulate, dataset, fit, hidden)
+        _refuse_beside_adapt(files, simulate, dataset, fit, hidden, check_kilometres)
         wanted = Adapting(adapt, start or SHIPPED, seed, steps, false_per_km, resample)
         _check_place(out)
         adapt_to_people(wanted, told, out)
@@ -170,12 +181,17 @@ def train(
     _check_source(source, start is not None)
     _check_place(out)
     _check_together(fit, start, hidden, steps)
+    if fit == "baselines":
+        if check_kilometres:
+            raise ValueError("--check-kilometres is for a network; leave out --fit")
+        _fit_baselines(source, out)
+        return
     if start is not None:
         _fine_tune(source, start, steps, out)
-    elif fit == "baselines":
-        _fit_baselines(source, out)
     else:
         _fit_network(source, hidden, steps, out)
+    if check_kilometres:
+        check_form(out, check_kilometres, threads)
 
 
 def _check_together(
@@ -198,6 +214,7 @@ def _refuse_beside_adapt(
     dataset: str | None,
     fit: str,
     hidden: int | None,
+    check_kilometres: float | None,
 ) -> None:
     """Refuse other recordings, and what only a new network has."""
     given = {
@@ -206,6 +223,7 @@ def _refuse_beside_adapt(
         "--dataset": dataset,
         "--fit": fit != "network",
         "--hidden": hidden,
+        "--check-kilometres": check_kilometres,
     }
     others = [name for name, value in given.items() if value]
     if others:

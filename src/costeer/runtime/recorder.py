@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from costeer.base.described import described
+from costeer.loop.network import EXACT
 from costeer.loop.parameters import DT, LoopParameters
 from costeer.loop.scenario import is_assisted
 from costeer.loop.trial import trial_metadata, trial_predictor
@@ -52,6 +53,7 @@ def drive_metadata(
     virtual = is_virtual(setup)
     return {
         **_told_in_json(about),
+        "network_form": None if about["network_form"] is None else EXACT,
         "participant": setup.participant,
         "driver": f"{'virtual hands' if virtual else 'person'}, {hands}",
         "driver_kind": VIRTUAL if virtual else PERSON,

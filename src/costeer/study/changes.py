@@ -21,6 +21,7 @@ _OPTIONS = {
     "car_parameters",
     "predictor",
     "weights",
+    "exact_network",
     "drivers",
     "driver_parameters",
     "parameters",

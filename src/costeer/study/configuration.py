@@ -70,6 +70,7 @@ class StudySettings(NamedTuple):
         parameters: Dotted names of parameters and the values they are given.
         scenario: Road, other cars and events: a name, a YAML file, or itself.
         mistakes: Made on purpose besides those of the scenario, as `latency=0.05`.
+        exact_network: The exact window gives every verdict, see `TrialSetup`.
     """
 
     participants: int = 12
@@ -86,6 +87,7 @@ class StudySettings(NamedTuple):
     parameters: tuple[tuple[str, float], ...] = ()
     scenario: str | Scenario = PUBLISHED_SCENARIO
     mistakes: tuple[str, ...] = ()
+    exact_network: bool = False
 
 
 PUBLISHED_STUDY = StudySettings()
@@ -170,6 +172,7 @@ def trial_setup(settings: StudySettings, trial: Trial) -> TrialSetup:
         intention=settings.intention,
         predictor=settings.predictor,
         weights=settings.weights or None,
+        exact_network=settings.exact_network,
         parameters=settings.parameters,
         scenario=settings.scenario,
         mistakes=settings.mistakes,
@@ -244,6 +247,8 @@ def study_configuration(settings: StudySettings) -> dict[str, object]:
     """
     method = method_named(settings.method)
     given = settings._asdict()
+    if not settings.exact_network:
+        del given["exact_network"]
     del given["scenario"], given["mistakes"]  # told below, if unusual
     given |= {
         "method": settings.method if isinstance(settings.method, str) else method.name,

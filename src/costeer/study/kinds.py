@@ -71,6 +71,7 @@ _KINDS = {
     "car": _TEXT,
     "predictor": _TEXT,
     "weights": _TEXT,
+    "exact_network": Kind("true or false", lambda value: isinstance(value, bool)),
     "drivers": _TEXTS,
     "parameters": _NUMBERS,
     "scenario": _TEXT,

@@ -1,10 +1,10 @@
 """Whether a network's bracketed form says what its exact window says.
 
 Nothing proves it (intention/bracket.py), so it is tried: drives of virtual drivers whom
-the network has never met, half of them manual, half with guidance and the exact window
-in the loop. Over the signals of each drive both forms give a verdict at every sample.
-If no side differs, the bracketed form in the loop drives the same drive, sample by
-sample from the first.
+the network has never met, half of them manual, half with guidance and the bracketed
+form in the loop. Over the signals of each drive the exact window gives a verdict at
+every sample, too. If no side differs, the exact window in the loop would have driven
+the same drive, sample by sample from the first.
 
 A wrong side needs all three states beyond the band on the wrong side of 0.5. How far
 they went there, as a share of the way to the band, is the margin.
@@ -24,7 +24,7 @@ from numpy.typing import NDArray
 
 from costeer.drivers.population import POPULATION_VERSION
 from costeer.intention.bracket import watched
-from costeer.intention.checked import FACT
+from costeer.intention.checked import FACT, FEWEST_KILOMETRES
 from costeer.intention.features import FEATURES, HEAD_YAW, SAMPLE_RATE, hide
 from costeer.intention.gru import NetworkWeights
 from costeer.intention.starts import BAND, BracketWeights, bracket_weights
@@ -90,6 +90,9 @@ class Tally(NamedTuple):
     margin: float = 0.0
 
 
+_ASSUMED = Tally(kilometres=FEWEST_KILOMETRES)
+
+
 def joined(one: Tally, other: Tally) -> Tally:
     """Both together."""
     sums: list[Any] = [a + b for a, b in zip(one, other, strict=True)]  # Any: numbers
@@ -97,12 +100,12 @@ def joined(one: Tally, other: Tally) -> Tally:
 
 
 def assisted_setup(place: int, seed: int, weights: Path) -> TrialSetup:
-    """A trial with guidance, the exact window in the loop.
+    """A trial with guidance.
 
     Args:
         place: Of the driver, which picks the condition.
         seed: Of the population and of all noise.
-        weights: File of the network.
+        weights: File of the network, which says that it has passed.
     """
     strength, duration = ASSISTED[place % len(ASSISTED)]
     return TrialSetup(
@@ -112,7 +115,6 @@ def assisted_setup(place: int, seed: int, weights: Path) -> TrialSetup:
         strength_factor=strength,
         change_duration=duration,
         weights=str(weights),
-        exact_network=True,
     )
 
 
@@ -199,7 +201,8 @@ def checked_drives(
 
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "network.npz"
-        save_weights(file, network)
+        # The loop is to use the form that is checked, so this file says that it may.
+        save_weights(file, with_check(network, _ASSUMED, seed))
         drive = partial(checked_drive, network, file, seed)
         try:
             return reduce(joined, run_jobs(drive, places, jobs, told), Tally())
