@@ -35,17 +35,15 @@ from costeer.intention.weights import (
     save_weights,
 )
 from costeer.loop.scenario import TrialSetup
-from costeer.loop.trial import simulate_trial
 from costeer.scale.jobs import JobsStoppedError, run_jobs
-from costeer.training.recordings import recordings_of
-from costeer.training.simulation import FIRST_UNSEEN, manual_setup
+from costeer.training.simulation import FIRST_UNSEEN, manual_setup, recorded
 from costeer.training.triggers import TriggerParameters, onsets
 
 FIRST_CHECKED = FIRST_UNSEEN + 100_000
-"""Number of the first driver who checks; nobody else drives them."""
+"""Number of the first driver who checks."""
 
 CHECK_SEED = 90_001
-"""Of these drivers and of all noise."""
+"""Of these drivers and of all noise: of nothing else."""
 
 DRIVE = 8.0
 """Length of a drive [km]."""
@@ -164,9 +162,8 @@ def checked_drive(
         place: Of the drive.
     """
     packed = bracket_weights(network.weights, BAND)
-    record = simulate_trial(check_setup(place, seed, file))
     found = Tally(drives=1)
-    for each in recordings_of(record, f"drive {place}"):
+    for each in recorded(check_setup(place, seed, file)):
         km = float(each.features[:, _VELOCITY].sum()) / SAMPLE_RATE / 1000.0
         told = Tally(kilometres=km, assisted_kilometres=km * (place % 2))
         both = compared(network.weights, packed, each.features)

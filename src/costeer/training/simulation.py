@@ -77,13 +77,14 @@ def simulate_setups(
             progress(1)
 
     try:
-        found = run_jobs(_recorded, setups, jobs, told)
+        found = run_jobs(recorded, setups, jobs, told)
     except JobsStoppedError as stopped:
         raise (stopped.__cause__ or stopped) from None
     return [recording for each in found for recording in each]
 
 
-def _recorded(setup: TrialSetup) -> list[Recording]:
+def recorded(setup: TrialSetup) -> list[Recording]:
+    """One trial, as recordings to learn from or to judge with."""
     name = f"simulated driver {setup.participant} {setup.condition}"
     return recordings_of(simulate_trial(setup), name)
 
