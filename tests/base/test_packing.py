@@ -10,6 +10,8 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from numba.core.runtime import _nrt_python as counting
+from numba.core.runtime import rtsys
 from numpy.typing import NDArray
 
 from costeer.base.array import Flag, Real
@@ -101,3 +103,25 @@ def test_packing_writes_from_the_start_and_no_further(room: int) -> None:
     array = np.full(room, 8.0)
     pack(array, LIKE)
     assert array.tolist() == [0.0] * 7 + [8.0] * (room - 7)
+
+
+def test_compiled_it_takes_an_array_without_gaps_alone() -> None:
+    array = np.zeros(14)
+    with pytest.raises(numba.TypingError, match="no row of float64 without gaps"):
+        compiled_pack(array[::2], LIKE)
+    with pytest.raises(numba.TypingError, match="no row of float64 without gaps"):
+        compiled_unpack(LIKE, array.astype(np.float32))
+
+
+def test_unpacked_memories_are_given_back() -> None:
+    """Each is a new array with one owner: no memory leaks, none is freed twice."""
+    array = packed(LIKE)
+    counting.memsys_enable_stats()
+    try:
+        before = rtsys.get_allocation_stats()
+        for _ in range(100):
+            compiled_unpack(LIKE, array)
+        after = rtsys.get_allocation_stats()
+    finally:
+        counting.memsys_disable_stats()
+    assert after.alloc - before.alloc == after.free - before.free > 0

@@ -46,6 +46,7 @@ def test_what_cannot_be_changed_is_left_alone() -> None:
     assert changed(ast.parse("'text'").body[0].value) == ""  # type: ignore[attr-defined]
 
 
+@pytest.mark.slow
 def test_changes_that_nobody_can_observe_are_changes_that_are_made() -> None:
     files = {file for file, _, _ in UNSEEN}
     made = {(m.file, m.source, m.told) for file in files for m in mutants(file)}

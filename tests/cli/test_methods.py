@@ -52,6 +52,7 @@ def test_it_says_what_a_method_must_be_told(capsys: pytest.CaptureFixture[str]) 
     }
 
 
+@pytest.mark.slow
 def test_plug_ins_are_listed_and_those_that_fail_say_why(
     tmp_path: Path,
     monkeypatch: pytest.MonkeyPatch,

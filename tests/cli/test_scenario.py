@@ -122,6 +122,7 @@ def test_what_cannot_be_is_refused_in_one_line(
     assert len(said.splitlines()) == 1
 
 
+@pytest.mark.slow
 def test_a_file_of_ten_lines_is_driven_and_recorded(tmp_path: Path) -> None:
     file, out = tmp_path / "own.yaml", tmp_path / "a.parquet"
     file.write_text(OWN)

@@ -26,6 +26,8 @@ from tests.comparison.fakes import NUM_TRIALS, SMALL, counted, made_up
 from tests.methods.rivals import FILE, example
 from tests.study.fakes import contents
 
+pytestmark = pytest.mark.slow
+
 
 def run_shard(
     out: Path, number: int, total: int, settings: ComparisonSettings = SMALL

@@ -136,6 +136,7 @@ def test_every_column_of_every_table_is_explained(reported: Path) -> None:
                 assert told.get((file.name, name)), f"{file.name}: {name}"
 
 
+@pytest.mark.slow
 def test_the_report_is_made_again_from_the_results_alone(
     reported: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

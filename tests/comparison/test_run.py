@@ -110,6 +110,7 @@ def test_a_finished_comparison_runs_no_trial_again(
     assert contents(again) == whole
 
 
+@pytest.mark.slow
 def test_an_interruption_keeps_whole_blocks_and_no_part_of_one(
     tmp_path: Path, whole: dict[str, bytes]
 ) -> None:
@@ -293,6 +294,7 @@ def test_workers_elsewhere_write_the_same_bytes(tmp_path: Path) -> None:
     assert contents(tmp_path / "workers") == contents(tmp_path / "threads")
 
 
+@pytest.mark.slow
 def test_a_trial_that_failed_is_tried_again(
     tmp_path: Path, whole: dict[str, bytes]
 ) -> None:

@@ -27,6 +27,7 @@ def found_durations(planned: float, trials: int) -> np.ndarray:
     return np.array(found)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "planned",
     [7.0, *(pytest.param(t, marks=pytest.mark.slow) for t in (4.0, 5.5, 9.0, 12.0))],

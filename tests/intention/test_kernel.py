@@ -74,6 +74,7 @@ def in_python(entry: Any) -> Any:
     return entry.py_func
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "absent", [pytest.param((), marks=pytest.mark.slow), ("head_yaw", "yaw_angle")]
 )

@@ -224,6 +224,7 @@ def followed(
     return estimates
 
 
+@pytest.mark.slow
 def test_compiled_it_says_the_same() -> None:
     motions = np.random.default_rng(6).normal(size=(60, 3))
     motions[::2, 1] = math.nan

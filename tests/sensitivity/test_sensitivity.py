@@ -56,6 +56,7 @@ def test_a_sum_has_the_indices_of_its_weights() -> None:
         assert abs(row.total - share) <= 2.0 * row.total_half_width + 1e-12
 
 
+@pytest.mark.slow
 def test_factors_that_only_act_together_have_a_total_alone() -> None:
     # Of (u-1/2)(v-1/2) no part is by u or v alone. The estimate of a total is a mean
     # of 1024 squares whose standard deviation is 1.8 of it: three standard errors are
@@ -129,6 +130,7 @@ def test_an_analysis_goes_on_where_it_stopped(tmp_path: Path) -> None:
         drive_all(tmp_path, SMALL._replace(seed=2), 1, ignore, made_up)
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("undrawn")
 def test_a_report_has_every_measure_and_says_what_is_missing(tmp_path: Path) -> None:
     outcomes = drive_all(tmp_path, SMALL, 1, ignore, made_up)

@@ -21,6 +21,8 @@ from costeer.sessions.export import export_session
 from costeer.sessions.session import Session
 from tests.sessions.made_up import made_up_session
 
+pytestmark = pytest.mark.slow
+
 MOTION = "sub-P01/ses-01/motion/sub-P01_ses-01_task-strongRapid"
 NUM_TRIALS = 8
 """Of the made-up study that count."""

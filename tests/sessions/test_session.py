@@ -91,6 +91,7 @@ def test_the_steps_come_in_the_order_of_the_plan_and_end(tmp_path: Path) -> None
     assert (tmp_path / "practice/P01-practise-manual.parquet").is_file()
 
 
+@pytest.mark.slow
 @settings(
     max_examples=25,
     deadline=None,

@@ -167,6 +167,7 @@ def test_every_bar_stands_on_zero_and_is_as_high_as_the_mean(
         assert panel.get_ylim()[0] == 0.0
 
 
+@pytest.mark.slow
 def test_an_interval_that_is_cut_at_zero_is_told(material: StudyMaterial) -> None:
     (sdlp,) = (each for each in QUANTITIES if each.name == "sdlp")
     cut = "Intervals that reach below zero are cut at zero."

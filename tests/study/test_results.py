@@ -145,6 +145,7 @@ def test_records_that_are_wanted_later_take_the_place_of_results(
     assert contents(tmp_path) == whole
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("undrawn")
 def test_a_report_without_records_says_which_figures_need_them(tmp_path: Path) -> None:
     run_study(tmp_path, SMALL, report=None, simulate=made_up, scale=MEASURES_ALONE)

@@ -165,6 +165,7 @@ def numbers(found: StudyTests) -> list[float]:
     return [float(cell) for cell in cells if isinstance(cell, int | float)]
 
 
+@pytest.mark.slow
 def test_order_of_rows_and_names_of_participants_change_nothing() -> None:
     rng = np.random.default_rng(1)
     changed = []
@@ -328,6 +329,7 @@ def test_masked_entry_is_a_missing_one() -> None:
     assert effect(found, "sdlp", "published").n == 83
 
 
+@pytest.mark.slow
 def test_data_frames_and_lists_give_the_same_as_arrays() -> None:
     tables = made_up_study(3)
     trials = pd.DataFrame(tables[0])

@@ -165,6 +165,7 @@ def test_an_event_counts_in_its_condition_and_among_all(
     assert set(number.values()) == {"0"}
 
 
+@pytest.mark.slow
 def test_a_study_without_any_trigger_is_reported(
     study_folder: Path, tmp_path: Path
 ) -> None:

@@ -26,6 +26,8 @@ from costeer.training.triggers import total
 from costeer.training.verdicts import DriverVerdicts, by_driver, verdicts
 from tests.training.synthetic import drive, drives
 
+pytestmark = pytest.mark.slow
+
 START = random_weights(4, seed=1)
 NETWORK = intention_network(START, {"source": "a test"})
 NO_STEP = DEFAULTS._replace(

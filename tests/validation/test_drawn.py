@@ -77,6 +77,7 @@ def test_population_2_tolerates_nothing_and_says_nothing_of_a_band() -> None:
     assert "tolerance.band" not in {each.parameter for each in spreads(alone)}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("population", BOTH, ids=lambda p: p.name)
 @pytest.mark.parametrize("name", DISTRIBUTIONS)
 def test_a_parameter_is_spread_as_its_distribution_says(

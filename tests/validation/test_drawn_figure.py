@@ -17,6 +17,8 @@ from costeer.validation.drawn_figure import (
     population_parameters_svg,
 )
 
+pytestmark = pytest.mark.slow
+
 
 def population(num_drivers: int) -> Drawn:
     return Drawn(5, drawn_drivers(5, num_drivers, 20.0))

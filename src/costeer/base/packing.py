@@ -7,15 +7,21 @@ Booleans and whole numbers become floats; a vector inside a tuple lies in its pl
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from typing import Any, NamedTuple, TypeVar, cast
+from collections.abc import Callable
+from typing import Any, TypeVar, cast
 
 import numpy as np
-from numba import types
+from numba import extending
+from numba import types as numba_types
+from numba.core import errors
 from numba.extending import overload
 from numpy.typing import NDArray
 
 Tuple = TypeVar("Tuple")
+
+# Any: Numba types neither its types nor its decorators.
+types: Any = numba_types
+intrinsic = cast("Callable[[Any], Any]", extending.intrinsic)
 
 
 def packed_size(value: Any) -> int:
@@ -93,83 +99,105 @@ def _unpack(like: Any, array: NDArray[np.float64], offset: int) -> tuple[Any, in
     return type(like)(array[offset]), offset + 1
 
 
-class _Leaf(NamedTuple):
-    """A number or an array in a Numba tuple type.
-
-    Attributes:
-        expression: How the source reaches it, e.g. `value.car.mass`.
-        kind: Its Numba type.
-        place: Where it lies in the packed array, as source.
-    """
-
-    expression: str
-    kind: Any  # Any: Numba does not type its types
-    place: str
+# Compiled, both are one row of loads and stores, written as LLVM's own instructions: as
+# Python source with a statement for each of 800 numbers they took Numba half a minute.
 
 
-def _is_tuple(kind: Any) -> bool:
-    """Whether a Numba type is that of a named tuple."""
-    return isinstance(kind, types.BaseNamedTuple)
+class _Place:
+    """Where the next number lies; how long an array is, is known at run time."""
+
+    def __init__(self, context: Any, builder: Any, array: Any, kind: Any) -> None:
+        if kind.layout != "C" or kind.dtype != types.float64:
+            raise errors.TypingError(f"{kind} is no row of float64 without gaps")
+        made = context.make_array(kind)(context, builder, array)
+        self._builder, self._data = builder, made.data
+        self.offset = context.get_constant(types.intp, 0)
+        self._one = context.get_constant(types.intp, 1)
+
+    def next(self) -> Any:
+        """Pointer to the next number."""
+        found = self._builder.gep(self._data, [self.offset])
+        self.skip(self._one)
+        return found
+
+    def skip(self, count: Any) -> None:
+        """Go on by so many numbers."""
+        self.offset = self._builder.add(self.offset, count)
 
 
-def _leaves(kind: Any, expression: str) -> list[tuple[str, Any]]:
-    """Expression and type of all leaves of a Numba tuple type, in order."""
-    if not _is_tuple(kind):
-        return [(expression, kind)]
-    parts = zip(kind.fields, kind.types, strict=True)
-    return [
-        leaf for name, part in parts for leaf in _leaves(part, f"{expression}.{name}")
-    ]
+def _write_out(array: NDArray[np.float64], start: int, values: Any) -> None:
+    for k in range(values.size):
+        array[start + k] = values[k]
 
 
-def _placed(kind: Any, expression: str) -> list[_Leaf]:
-    """All leaves with their places; how long an array is, is asked at run time."""
-    count, sizes, leaves = 0, "", []
-    for leaf, part in _leaves(kind, expression):
-        first = f"{count}{sizes}"
-        if isinstance(part, types.Array):
-            sizes += f" + {leaf}.size"
-            leaves.append(_Leaf(leaf, part, f"{first}:{count}{sizes}"))
-        else:
-            count += 1
-            leaves.append(_Leaf(leaf, part, first))
-    return leaves
+def _read_out(array: NDArray[np.float64], start: int, like: Any) -> Any:
+    values = np.empty_like(like)
+    for k in range(values.size):
+        values[k] = array[start + k]
+    return values
+
+
+@intrinsic
+def _stored(typing: Any, array: Any, value: Any) -> Any:
+    """Write all numbers of a tuple into an array."""
+
+    def write(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        place = _Place(context, builder, arguments[0], array)
+
+        def store(kind: Any, part: Any) -> None:
+            if isinstance(kind, types.BaseTuple):
+                for k, inner in enumerate(kind.types):
+                    store(inner, builder.extract_value(part, k))
+            elif isinstance(kind, types.Array):
+                given = arguments[0], place.offset, part
+                called = types.void(array, types.intp, kind)
+                context.compile_internal(builder, _write_out, called, given)
+                made = context.make_array(kind)(context, builder, part)
+                place.skip(made.nitems)
+            else:
+                number = context.cast(builder, part, kind, types.float64)
+                builder.store(number, place.next())
+
+        store(value, arguments[1])
+        return context.get_dummy_value()
+
+    return types.void(array, value), write
+
+
+@intrinsic
+def _loaded(typing: Any, like: Any, array: Any) -> Any:
+    """A tuple like another, of the numbers of an array."""
+
+    def read(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        place = _Place(context, builder, arguments[1], array)
+
+        def load(kind: Any, part: Any) -> Any:
+            if isinstance(kind, types.BaseTuple):
+                inner = [
+                    load(each, builder.extract_value(part, k))
+                    for k, each in enumerate(kind.types)
+                ]
+                return context.make_tuple(builder, kind, inner)
+            if isinstance(kind, types.Array):
+                given = arguments[1], place.offset, part
+                called = kind(array, types.intp, kind)
+                value = context.compile_internal(builder, _read_out, called, given)
+                made = context.make_array(kind)(context, builder, part)
+                place.skip(made.nitems)
+                return value
+            number = builder.load(place.next())
+            return context.cast(builder, number, types.float64, kind)
+
+        return load(like, arguments[0])
+
+    return like(like, array), read
 
 
 @overload(pack, strict=False)
 def _pack_compiled(array: Any, value: Any) -> Any:
-    lines = [
-        f"    array[{leaf.place}] = {leaf.expression}\n"
-        for leaf in _placed(value, "value")
-    ]
-    return _written("def implementation(array, value):\n" + "".join(lines), {})
+    return lambda array, value: _stored(array, value)
 
 
 @overload(unpack, strict=False)
 def _unpack_compiled(like: Any, array: Any) -> Any:
-    names: dict[str, Any] = {}
-    leaves = iter(_placed(like, "like"))
-    expression = _constructor(like, names, leaves)
-    source = f"def implementation(like, array):\n    return {expression}\n"
-    return _written(source, names)
-
-
-def _constructor(kind: Any, names: dict[str, Any], leaves: Iterator[_Leaf]) -> str:
-    """Return the expression that rebuilds `kind` from the leaves' places."""
-    if _is_tuple(kind):
-        name = f"Tuple{len(names)}"
-        names[name] = kind.instance_class
-        parts = [_constructor(part, names, leaves) for part in kind.types]
-        return f"{name}({', '.join(parts)})"
-    stored = f"array[{next(leaves).place}]"
-    if isinstance(kind, types.Boolean):
-        return f"({stored} != 0.0)"
-    if isinstance(kind, types.Integer):
-        return f"int({stored})"
-    return f"{stored}.copy()" if isinstance(kind, types.Array) else stored
-
-
-def _written(source: str, names: dict[str, Any]) -> Any:
-    """Return the function `implementation` that `source` defines."""
-    exec(source, names)  # no other way to write out the fields of a tuple
-    return names["implementation"]
+    return lambda like, array: _loaded(like, array)

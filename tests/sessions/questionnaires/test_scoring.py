@@ -72,6 +72,7 @@ def test_a_failed_performance_is_load() -> None:
     assert scores("nasa-tlx-raw", answers) == {"tlx_raw": 15.0}
 
 
+@pytest.mark.slow
 @given(ratings, st.permutations(TLX), st.randoms(use_true_random=False))
 def test_order_of_the_comparisons_does_not_count(
     values: list[float], order: list[str], chance: object

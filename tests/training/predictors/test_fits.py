@@ -62,6 +62,7 @@ def tables() -> tuple[Table, Table]:
     return training, validation
 
 
+@pytest.mark.slow
 def test_logistic_regression_is_that_of_scikit_learn(
     tables: tuple[Table, Table],
 ) -> None:

@@ -27,6 +27,8 @@ from costeer.validation.intention.report import prepare, write_report
 from costeer.validation.intention.words import outcomes
 from tests.training.synthetic import drive, drives
 
+pytestmark = pytest.mark.slow
+
 PARAMETERS = DEFAULTS._replace(num_resamples=50, false_per_km=0.5)
 CURVES = {"8": [[10, 0.2, 0.1, 0.5, {}], [20, 0.1, 0.05, 0.7, {}]], "16": []}
 

@@ -12,12 +12,14 @@ from typing import Any
 import pytest
 
 from costeer.sessions.standing import OutOfStepError
+from costeer.web.sessions import desk, shown
 from costeer.web.sessions.console import Console
 from costeer.web.sessions.step_drive import RUNNING
 from tests.waiting import PATIENCE
 from tests.web.sessions.conftest import Study
 
 AGREED = {"experimenter_initials": "AB"}
+THIRDS = {"understood": 3, "in_control": 3, "worked_against_me": 3}
 
 
 def console_of(study: Study) -> Console:
@@ -142,6 +144,24 @@ def test_an_emergency_stop_waits_for_nobody(study: Study) -> None:
         study.desk._drive = None
     thread.join()
     assert drive.ended == ["emergency stop"]
+
+
+@pytest.mark.parametrize(("left", "told"), [(0.4, 1), (0.0, 0), (59.2, 60)])
+def test_a_page_is_not_told_of_the_end_of_a_break_too_early(
+    study: Study, monkeypatch: pytest.MonkeyPatch, left: float, told: int
+) -> None:
+    console_of(study)
+    agree(study)
+    study.desk.next("P01", "instruct-welcome")
+    study.desk.answers("P01", "ask-likert", THIRDS)
+    for room in (shown, desk):
+        monkeypatch.setattr(room, "break_left", lambda *_: left)
+    assert study.desk.state()["step"]["remaining"] == told
+    if told:
+        with pytest.raises(ValueError, match="not over yet"):
+            study.desk.next("P01", "break-break")
+    else:
+        assert study.desk.next("P01", "break-break")["step"]["kind"] == "ask"
 
 
 def test_words_that_break_in_the_middle_stop_nobody(study: Study) -> None:

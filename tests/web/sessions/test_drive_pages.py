@@ -11,7 +11,12 @@ from playwright.sync_api import Page
 
 from costeer.sessions.session import Session
 from tests.web.browser import stop
-from tests.web.sessions.test_whole_session import PATIENCE, both_pages, wait_for
+from tests.web.sessions.test_whole_session import (
+    PATIENCE,
+    both_pages,
+    get_ready,
+    wait_for,
+)
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow, pytest.mark.timeout(900)]
 
@@ -31,14 +36,7 @@ STATE = "document.getElementById('state').textContent"
 
 def start(page: Page, console: Page) -> None:
     """Say that one is ready, and start at the console."""
-    page.get_by_role("button", name="I am ready").click()
-    wait_for(console, "document.getElementById('facts').textContent.includes('drives')")
-    # On a busy computer the loop can stand still before anybody drives: a fault.
-    deadline = time.monotonic() + PATIENCE
-    while not console.locator("#start:enabled").count():
-        assert time.monotonic() < deadline, console.locator("body").inner_text()
-        console.evaluate("document.querySelector('#acknowledge:enabled')?.click()")
-        console.wait_for_timeout(200)
+    get_ready(page, console)
     console.get_by_role("button", name="Start").click()
     go_on(console)
 

@@ -62,7 +62,8 @@ class ShownSteps:
                 self.instrument(who, step), self._seed(who, step)
             )
         if step.kind == "break":
-            shown["remaining"] = round(break_left(self._session, standing))
+            # Rounded up: a page that shows 0 may go on.
+            shown["remaining"] = math.ceil(break_left(self._session, standing))
         if step.drives:
             shown["drive"] = {"state": "waiting"} if drive is None else drive.told()
             shown["attempt"] = attempt
