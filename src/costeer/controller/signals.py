@@ -25,18 +25,21 @@ class Request(NamedTuple):
     """What is asked of a method at one step, by predictor, person or script.
 
     Attributes:
-        crossing_probability: That the car crosses into the lane on
-            `Measurement.side` soon; NaN for no verdict [-].
+        crossing_probability: That the car crosses soon into the lane on `side`; NaN
+            for no verdict [-].
         requested: A lane change asked for from outside: indicator or script.
         change_duration: That a lane change is to take; NaN: the method's own [s].
         indicator: Side that the driver's indicator is set to, -1 right, 0 off, +1
             left [-].
+        side: That probability or request are about, -1 right, +1 left; 0: the usual
+            one. A method hears it as `Measurement.side` [-].
     """
 
     crossing_probability: Real = math.nan
     requested: Flag = False
     change_duration: Real = math.nan
     indicator: Real = 0.0
+    side: Real = 0.0
 
 
 class Intention(NamedTuple):

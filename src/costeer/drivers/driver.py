@@ -303,17 +303,19 @@ def acted(
 ) -> Action:
     """What the driver does until the next step, from the state after this one."""
     decided, wanted = state.decision, state.longitudinal.wanted_acceleration
+    side = decision.direction(decided, knowledge.road.overtaking_side)
     return Action(
         arm=command,
         pedals=longitudinal.pedals(
             knowledge.car, wanted, measurement.longitudinal_velocity
         ),
         head_yaw=gaze.head_yaw(parameters.gaze, state.gaze),
-        intention=decision.direction(decided, knowledge.road.overtaking_side),
+        intention=side,
         at_home=decided.phase == decision.CRUISING,
         plan=Plan(
             change_duration=decided.change_duration,
             time_to_crossing=decision.time_to_crossing(decided),
+            side=side,
         ),
         indicator=state.indicator.side,
     )

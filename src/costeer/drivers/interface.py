@@ -136,10 +136,12 @@ class Plan(NamedTuple):
     Attributes:
         change_duration: Of the lane change, NaN for none planned [s].
         time_to_crossing: Until it crosses the line; negative after it [s].
+        side: Of the lane that it leads to, -1 right, +1 left; 0: the usual one [-].
     """
 
     change_duration: Real = math.nan
     time_to_crossing: Real = 1e9
+    side: Real = 0.0
 
 
 class Action(NamedTuple):

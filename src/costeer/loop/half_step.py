@@ -26,7 +26,7 @@ from costeer.loop.parameters import DT, LoopParameters
 from costeer.methods.interface import Rule
 from costeer.plant.fleet_motion import World, moved
 from costeer.plant.road import cruising_lane
-from costeer.sensing.measurement import Measurement
+from costeer.sensing.measurement import Measurement, towards
 
 S = TypeVar("S")
 
@@ -187,17 +187,18 @@ def half_step(
         measurement,
     )
     now = state.events._replace(contact=contact)
-    request = request._replace(indicator=seat.action.indicator)
+    seen = towards(parameters.road, measurement, request.side)
+    request = request._replace(indicator=seat.action.indicator, side=seen.side)
     limit = xp.select(parameters.assists > 0.5, parameters.column.torque_limit, 0.0)
     wrong, road = parameters.mistakes, parameters.road
-    given = wrong, state.mistakes, road, measurement, request, seat.action, state.time
-    truly = Heard(measurement, request, state.mistakes)
+    given = wrong, state.mistakes, road, seen, request, seat.action, state.time
+    truly = Heard(seen, request, state.mistakes)
     got = xp.when(wrong.any > 0.5, heard, given, truly)
     method_state, signals = rule.step(
         parameters.controller, state.method, got.measurement, got.request, DT
     )
     asked = contained(signals.applied_torque, limit)
-    told = wrong, got.memory, measurement.side, asked, limit, state.time
+    told = wrong, got.memory, seen.side, asked, limit, state.time
     same = got.memory, asked
     memory, command = xp.when(wrong.any > 0.5, given_torque, told, same)
     sample = Sample(

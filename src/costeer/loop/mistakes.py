@@ -16,7 +16,7 @@ from costeer.controller.signals import Request
 from costeer.drivers.interface import Action
 from costeer.loop.clock import DT
 from costeer.plant.parameters import CarParameters, ColumnParameters, RoadParameters
-from costeer.plant.road import distance_to_adjacent_lane
+from costeer.plant.road import distance_to_adjacent_lane, lane_exists
 from costeer.sensing.measurement import Measurement
 
 POSITIVE = 0.5
@@ -208,8 +208,7 @@ def measured_side(
 ) -> Real:
     """Side on which the method believes the other lane [-]."""
     other = measurement.lane - measurement.side
-    exists = (other >= 0.0) & (other <= road.num_lanes - 1.0)
-    wrong = (parameters.wrong_side > 0.5) & exists
+    wrong = (parameters.wrong_side > 0.5) & lane_exists(road, other)
     return xp.select(wrong, -measurement.side, measurement.side)
 
 

@@ -61,9 +61,14 @@ def idle_weights() -> BracketWeights:
     )
 
 
+def _empty(weights: BracketWeights) -> Network:
+    """A network that has seen nothing yet."""
+    return Network(weights, initial_state(weights), initial_state(weights))
+
+
 def idle_network() -> Network:
     """For trials that ask no network."""
-    return Network(idle_weights(), initial_state(idle_weights()))
+    return _empty(idle_weights())
 
 
 @cache
@@ -126,4 +131,4 @@ def trial_network(
         return idle_network()
     band = BAND if form == BRACKET else OPEN
     packed = _packed(predictor.hash, str(setup.predictor), setup.weights, band)
-    return Network(packed, initial_state(packed))
+    return _empty(packed)

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from collections import deque
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from costeer.intention.features import (
+    DISTANCE,
     FEATURES,
     WINDOW_LENGTH,
     IntentionSample,
@@ -26,10 +28,10 @@ from costeer.intention.predictors.interface import Predictor
 from costeer.intention.predictors.registry import PREDICTORS, predictor
 from costeer.loop.endings import has_stopped, still
 from costeer.loop.rollout import Advance
-from costeer.loop.tick import INTENTION_GIVEN, Script
+from costeer.loop.tick import INTENTION_GIVEN, Script, Verdict, likelier
 from costeer.plant.parameters import RoadParameters
 from costeer.plant.place import BARRIER
-from costeer.plant.road import adjacent_side
+from costeer.plant.road import adjacent_side, distance_to_adjacent_lane
 from costeer.records.row import ROW_COLUMNS
 
 Rows = NDArray[np.float64]
@@ -38,22 +40,64 @@ _SIGNALS = [ROW_COLUMNS.index(name) for name in FEATURES]
 _HEAD = FEATURES.index("head_yaw")
 _SEEN = ROW_COLUMNS.index("head_yaw_valid")
 _LANE = ROW_COLUMNS.index("lane")
+_LATERAL = ROW_COLUMNS.index("lateral_position")
 _PLACE = ROW_COLUMNS.index("longitudinal_position")
 _SPEED = ROW_COLUMNS.index("longitudinal_velocity")
 _CONTACT = ROW_COLUMNS.index("contact")
 
 
-def sample_of(row: Rows, road: RoadParameters) -> IntentionSample:
+def sample_of(row: Rows, road: RoadParameters, beyond: bool = False) -> IntentionSample:
     """The predictor's sample of a row, facing right; a lost head is NaN.
 
     Args:
         row: In the order of `ROW_COLUMNS`; more may follow.
         road: Tells on which side the adjacent lane is.
+        beyond: Whether the other side is taken for that of the adjacent lane.
     """
     values = row[_SIGNALS].tolist()
     if row[_SEEN] < 0.5:
         values[_HEAD] = math.nan
-    return facing(IntentionSample(*values), adjacent_side(road, float(row[_LANE])))
+    lane = float(row[_LANE])
+    side = adjacent_side(road, lane)
+    if beyond:
+        side, place = -side, float(row[_LATERAL])
+        values[DISTANCE] = distance_to_adjacent_lane(road, place, lane, side)
+    return facing(IntentionSample(*values), side)
+
+
+Ask = Callable[[IntentionSample], float]
+"""Verdict after one more sample [-]."""
+
+
+class Outlook:
+    """A predictor that is asked for each side of a road on which it matters.
+
+    Args:
+        make: Makes what is asked sample by sample, its window empty.
+        road: Its lanes.
+    """
+
+    def __init__(self, make: Callable[[], Ask], road: RoadParameters) -> None:
+        self._make, self._road = make, road
+        self.forget()
+
+    def forget(self) -> None:
+        """Begin new windows."""
+        self._usual, self._other = self._make(), self._make()
+
+    def after(self, row: Rows) -> Verdict:
+        """Verdict after one more row of the record.
+
+        Raises:
+            ValueError: If the predictor gives no probability, or breaks.
+        """
+        usual = self._usual(sample_of(row, self._road))
+        lane = float(row[_LANE])
+        side = adjacent_side(self._road, lane)
+        if self._road.num_lanes <= 2.0:
+            return Verdict(usual, side)
+        other = self._other(sample_of(row, self._road, beyond=True))
+        return likelier(self._road, lane, side, usual, other)
 
 
 class Verdicts:
@@ -67,10 +111,6 @@ class Verdicts:
     def __init__(self, judge: Judge, name: str) -> None:
         self._judge, self._name = judge, name
         self._window: deque[IntentionSample] = deque(maxlen=WINDOW_LENGTH)
-
-    def forget(self) -> None:
-        """Begin a new window."""
-        self._window.clear()
 
     def after(self, sample: IntentionSample) -> float:
         """Verdict on the window that ends with a sample; NaN until it is full [-].
@@ -137,7 +177,7 @@ def any_predictor(
 def outside_rollout(
     advance: Advance,
     script: Script,
-    verdicts: Verdicts,
+    verdicts: Outlook,
     noise: Rows,
     road: RoadParameters,
     width: int,
@@ -147,7 +187,7 @@ def outside_rollout(
     Args:
         advance: Of the trial at its start.
         script: Requests from outside; its intention is not looked at.
-        verdicts: Of the predictor.
+        verdicts: Of the predictor, to each side.
         noise: Random numbers, shape `(time, draw)`.
         road: Its length ends the trial.
         width: Numbers in a row.
@@ -165,8 +205,9 @@ def outside_rollout(
         advance(asked, noise[now], rows[now], keep=False)
         if rows[k, _PLACE] >= road.length:  # where the step before has arrived
             return rows[:k]
-        probability = verdicts.after(sample_of(rows[k], road))
-        advance(asked._replace(probability=probability), noise[now], rows[now])
+        said = verdicts.after(rows[k])
+        given = asked._replace(probability=said.probability, side=said.side)
+        advance(given, noise[now], rows[now])
         standing = still(standing, float(rows[k, _SPEED]))
         if rows[k, _CONTACT] >= BARRIER or has_stopped(standing):
             return rows[: k + 1]

@@ -53,6 +53,8 @@ class PersonInput(NamedTuple):
         head_yaw: Normalised to [-1, 1], left positive [-].
         head_yaw_valid: Whether the head is seen.
         crossing_probability: Of the network; NaN for no verdict [-].
+        crossing_side: That probability or request are about, -1 right, +1 left; 0: the
+            usual one [-].
         requested: A lane change asked for from outside.
         leader_uniform: Sets the next leader's speed, in [0, 1) [-].
         indicator: Side that it is set to, -1 right, 0 off, +1 left [-].
@@ -68,6 +70,7 @@ class PersonInput(NamedTuple):
     requested: Flag
     leader_uniform: Real
     indicator: Real = 0.0
+    crossing_side: Real = 0.0
 
 
 class PersonMotion(NamedTuple):
@@ -212,6 +215,7 @@ def control(
         crossing_probability=given.crossing_probability,
         requested=given.requested,
         change_duration=math.nan,
+        side=given.crossing_side,
     )
     state = state._replace(events=with_car(state.events, measurement))
     seat = seated(parameters, motion, given, measurement)

@@ -23,6 +23,7 @@ from costeer.intention.starts import BracketState, BracketWeights
 from costeer.loop.endings import has_stopped, still
 from costeer.loop.events import has_collided
 from costeer.loop.half_step import Sample
+from costeer.loop.mistakes import POSITIVE
 from costeer.loop.parameters import DT, LoopParameters
 from costeer.loop.rows import LoopRule
 from costeer.loop.step import (
@@ -34,7 +35,9 @@ from costeer.loop.step import (
     step,
 )
 from costeer.plant.fleet import num_cars, write_cars
-from costeer.sensing.measurement import Measurement
+from costeer.plant.parameters import RoadParameters
+from costeer.plant.road import lane_exists
+from costeer.sensing.measurement import Measurement, facing_beyond
 
 S = TypeVar("S")
 
@@ -62,12 +65,14 @@ class Script(NamedTuple):
             line within this time [s].
         trigger_times: When a lane change is requested, shape `(request,)` [s].
         probability: The verdict that is given, NaN for none [-].
+        side: That it is about, -1 right, +1 left; 0: the usual one [-].
     """
 
     intention: int
     horizon: Real
     trigger_times: NDArray[np.float64]
     probability: Real = math.nan
+    side: Real = 0.0
 
 
 class Network(NamedTuple):
@@ -76,10 +81,46 @@ class Network(NamedTuple):
     Attributes:
         weights: As the kernel takes them; their band says in which form it runs.
         memory: Its windows, changed in place.
+        beyond: The same for the lane on the other side, where there may be one.
     """
 
     weights: BracketWeights
     memory: BracketState
+    beyond: BracketState
+
+
+class Verdict(NamedTuple):
+    """What is said of the next seconds.
+
+    Attributes:
+        probability: Of a crossing; NaN for no verdict [-].
+        side: To which it leads, -1 right, +1 left; 0: the usual one [-].
+    """
+
+    probability: Real
+    side: Real
+
+
+NO_VERDICT = Verdict(math.nan, 0.0)
+"""Where nobody is asked."""
+
+
+@compiled
+def likelier(
+    road: RoadParameters, lane: Real, side: Real, usual: Real, other: Real
+) -> Verdict:
+    """The verdict of two: on the usual side unless the other one says yes, and louder.
+
+    Args:
+        road: Its lanes.
+        lane: That the car is in [-].
+        side: The usual one, -1 right or +1 left [-].
+        usual: Crossing probability to that side [-].
+        other: To the other side; counts only where there is a lane [-].
+    """
+    louder = (other >= POSITIVE) & xp.logical_not(usual >= other)
+    counts = lane_exists(road, lane - side) & louder
+    return Verdict(xp.select(counts, other, usual), xp.select(counts, -side, side))
 
 
 @compiled
@@ -98,6 +139,19 @@ def intention_sample(measurement: Measurement) -> IntentionSample:
         yaw_angle=measurement.yaw_angle,
     )
     return facing(sample, measurement.side)
+
+
+@compiled
+def network_verdict(
+    road: RoadParameters, network: Network, measurement: Measurement
+) -> Verdict:
+    """What the network says: asked for each side where there may be lanes on both."""
+    usual = advance(network.weights, network.memory, intention_sample(measurement))
+    if road.num_lanes <= 2.0:
+        return Verdict(usual, measurement.side)
+    turned = facing_beyond(road, measurement)
+    other = advance(network.weights, network.beyond, intention_sample(turned))
+    return likelier(road, measurement.lane, measurement.side, usual, other)
 
 
 @compiled
@@ -137,19 +191,19 @@ def tick(
 ) -> tuple[LoopState[S], Sample[S]]:
     """One control step with its verdict and its sample."""
     measurement = sense(parameters, state)
-    probability = math.nan
+    verdict = NO_VERDICT
     if script.intention == INTENTION_SCRIPTED:
-        probability = scripted_probability(parameters, state, script.horizon)
+        crosses = scripted_probability(parameters, state, script.horizon)
+        verdict = Verdict(crosses, state.plan.side)
     if script.intention == INTENTION_NETWORK:
-        probability = advance(
-            network.weights, network.memory, intention_sample(measurement)
-        )
+        verdict = network_verdict(parameters.road, network, measurement)
     if script.intention == INTENTION_GIVEN:
-        probability = script.probability
+        verdict = Verdict(script.probability, script.side)
     request = Request(
-        crossing_probability=probability,
+        crossing_probability=verdict.probability,
         requested=requested(script.trigger_times, state.control.time),
         change_duration=own_duration(parameters, state),
+        side=verdict.side,
     )
     return step(rules, parameters, state, measurement, request, noise)
 

@@ -25,7 +25,7 @@ from costeer.loop.network import network_form, trial_network
 from costeer.loop.network import shipped_network as shipped_network
 from costeer.loop.network import trial_predictor as trial_predictor
 from costeer.loop.noise import driver_noise
-from costeer.loop.outside import Verdicts, outside_rollout
+from costeer.loop.outside import Outlook, Verdicts, outside_rollout
 from costeer.loop.parameters import DT, LoopParameters
 from costeer.loop.rollout import begun, rollout, row_width
 from costeer.loop.scenario import (
@@ -84,11 +84,11 @@ def simulate_trial(setup: TrialSetup, engine: str = "numba") -> TrialRecord:
     driver = trial_driver_model(setup)
     if predictor is not None and predictor.judge is not None and engine != "jax":
         advance = begun(method, parameters, network, engine, driver=driver)
-        verdicts = Verdicts(predictor.judge, predictor.name)
+        judge, name = predictor.judge, predictor.name
         rows = outside_rollout(
             advance,
             script,
-            verdicts,
+            Outlook(lambda: Verdicts(judge, name).after, parameters.road),
             noise,
             parameters.road,
             row_width(method, parameters),

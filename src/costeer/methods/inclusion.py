@@ -29,8 +29,9 @@ from costeer.controller.signals import (
 from costeer.controller.trajectory import TrajectoryParameters, TrajectoryState
 from costeer.methods.ibhs import like_ibhs, shared_tunables
 from costeer.methods.interface import Method, Tunable
-from costeer.methods.lanes import LaneParameters, exists, with_followed_lane
+from costeer.methods.lanes import LaneParameters, with_followed_lane
 from costeer.plant.parameters import CarParameters, ColumnParameters, RoadParameters
+from costeer.plant.road import lane_exists
 from costeer.records.columns import Column
 from costeer.sensing.measurement import Measurement
 
@@ -202,7 +203,7 @@ def choose(
     side = xp.select(asked, measurement.side, pushed_side)
     lane = xp.select(keeping, state.trajectory.lane + side, state.origin)
     known = trajectory.is_known(measurement)
-    wanted = known & (pushed | asked) & exists(parameters.road, lane)
+    wanted = known & (pushed | asked) & lane_exists(parameters.road, lane)
     return Choice(begins=wanted, lane=lane)
 
 

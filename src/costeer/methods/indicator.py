@@ -27,8 +27,9 @@ from costeer.controller.trajectory import TrajectoryParameters, TrajectoryState
 from costeer.methods.conditions import Condition
 from costeer.methods.ibhs import like_ibhs, shared_tunables
 from costeer.methods.interface import Method, Tunable
-from costeer.methods.lanes import LaneParameters, change, exists
+from costeer.methods.lanes import LaneParameters, change
 from costeer.plant.parameters import CarParameters, ColumnParameters, RoadParameters
+from costeer.plant.road import lane_exists
 from costeer.records.columns import Column
 from costeer.sensing.measurement import Measurement
 
@@ -161,7 +162,7 @@ def intention_of(
         dt: Control step [s].
     """
     due = state.time_asked >= parameters.lever.delay - dt / 2.0
-    open_to = exists(parameters.road, measurement.lane + state.side)
+    open_to = lane_exists(parameters.road, measurement.lane + state.side)
     waiting = (state.side != 0.0) & xp.logical_not(state.served)
     return Intention(detected=waiting & due & open_to & keeping, side=state.side)
 

@@ -22,9 +22,9 @@ from costeer.controller.signals import Assistance, Intention, Request
 from costeer.controller.trajectory import TrajectoryParameters, TrajectoryState
 from costeer.methods.ibhs import like_ibhs, shared_tunables
 from costeer.methods.interface import Method, Tunable
-from costeer.methods.lanes import LaneParameters, change, exists, lateral_velocity
+from costeer.methods.lanes import LaneParameters, change, lateral_velocity
 from costeer.plant.parameters import CarParameters, ColumnParameters, RoadParameters
-from costeer.plant.road import distance_to_adjacent_lane
+from costeer.plant.road import distance_to_adjacent_lane, lane_exists
 from costeer.sensing.measurement import Measurement
 
 
@@ -131,7 +131,7 @@ def is_crossing(
         road, measurement.lateral_position, measurement.lane, side
     )
     reach = parameters.crossing_time * side * lateral_velocity(measurement)
-    beside = exists(road, measurement.lane + side)
+    beside = lane_exists(road, measurement.lane + side)
     return beside & (side != 0.0) & (distance <= reach)
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import NamedTuple, Protocol
 
 from costeer.base import array as xp
-from costeer.base.array import Flag, Real, compiled
+from costeer.base.array import Real, compiled
 from costeer.controller import step as controller
 from costeer.controller import trajectory
 from costeer.controller.signals import (
@@ -19,7 +19,7 @@ from costeer.controller.signals import (
 from costeer.controller.step import Guiding
 from costeer.controller.trajectory import TrajectoryParameters, TrajectoryState
 from costeer.plant.parameters import RoadParameters
-from costeer.plant.road import lane_centre
+from costeer.plant.road import lane_centre, lane_exists
 from costeer.sensing.measurement import Measurement
 
 
@@ -48,12 +48,6 @@ class Changing(Keeping, Protocol):
 
     @property
     def trajectory(self) -> TrajectoryParameters: ...  # noqa: D102
-
-
-@compiled
-def exists(road: RoadParameters, lane: Real) -> Flag:
-    """Whether the road has a lane of this number."""
-    return (lane >= 0.0) & (lane <= road.num_lanes - 1.0)
 
 
 @compiled
@@ -88,7 +82,7 @@ def followed_lane(
     reach = road.lane_width / 2.0 + parameters.switch_distance
     left = xp.select(offset > reach, lane + 1.0, lane)
     beside = xp.select(offset < -reach, lane - 1.0, left)
-    return xp.select(exists(road, beside), beside, lane)
+    return xp.select(lane_exists(road, beside), beside, lane)
 
 
 @compiled

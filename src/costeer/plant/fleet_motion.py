@@ -35,7 +35,7 @@ from costeer.plant.following import (
 )
 from costeer.plant.outlook import Spot, is_on_ring, lane_outlook, outlook
 from costeer.plant.parameters import RoadParameters
-from costeer.plant.road import cruising_lane, lane_centre
+from costeer.plant.road import cruising_lane, lane_centre, lane_exists
 
 _LANE_REACH = 1.5
 """Beside the centre of a lane, within which a car is in the way of one that comes in
@@ -176,8 +176,7 @@ def by_mobil(
         safe, worth = advantage(law, car.velocity, car.desired, length, own, other)
         homewards = xp.select((home - car.lane) * side > 0.0, 1.0, -1.0)
         gain = worth + law.home_bias * homewards - law.changing_threshold
-        exists = (lane >= 0.0) & (lane <= road.num_lanes - 1.0)
-        better = safe & exists & (gain > best)
+        better = safe & lane_exists(road, lane) & (gain > best)
         best, target = xp.select(better, gain, best), xp.select(better, lane, target)
     starts = willing & (target != car.lane) & (car.present > 0.5)
     return changing_to(car, target, starts)

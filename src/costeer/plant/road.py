@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from costeer.base import array as xp
-from costeer.base.array import Real, compiled
+from costeer.base.array import Flag, Real, compiled
 from costeer.plant.parameters import RoadParameters
 
 
@@ -21,14 +21,19 @@ def lane_at(road: RoadParameters, lateral_position: Real) -> Real:
 
 
 @compiled
+def lane_exists(road: RoadParameters, lane: Real) -> Flag:
+    """Whether the road has a lane of this number."""
+    return (lane >= 0.0) & (lane <= road.num_lanes - 1.0)
+
+
+@compiled
 def adjacent_side(road: RoadParameters, lane: Real) -> Real:
     """Side of the adjacent lane [-]: -1 right, +1 left.
 
     With lanes on both sides: the overtaking side, unless the car is on the outermost
     lane of that side.
     """
-    overtaking = lane + road.overtaking_side
-    exists = (overtaking >= 0.0) & (overtaking <= road.num_lanes - 1.0)
+    exists = lane_exists(road, lane + road.overtaking_side)
     return xp.select(exists, road.overtaking_side, -road.overtaking_side)
 
 

@@ -352,6 +352,12 @@ COLUMNS: tuple[Column, ...] = (
         before=0.0,
     ),
     _code(
+        "crossing_side",
+        "that crossing_probability is about: -1 right, +1 left; 0 in older records",
+        "request.side",
+        "flipped",
+    )._replace(before=0.0),
+    _code(
         "driver_indicator",
         "set by the driver: -1 right, 0 off, +1 left",
         "action.indicator",

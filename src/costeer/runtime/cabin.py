@@ -82,6 +82,8 @@ class Controls(NamedTuple):
         head_yaw: Normalised, left positive [-].
         head_valid: Whether the head is seen.
         crossing_probability: Of the network; NaN for no verdict [-].
+        crossing_side: That probability or request are about, -1 right, +1 left; 0: the
+            usual one [-].
         requested: A lane change asked for by the indicator.
         leader_uniform: Sets the next leader's speed [-].
         indicator: Side that it is set to, -1 right, 0 off, +1 left [-].
@@ -94,6 +96,7 @@ class Controls(NamedTuple):
     head_yaw: float = 0.0
     head_valid: bool = False
     crossing_probability: float = math.nan
+    crossing_side: float = 0.0
     requested: bool = False
     leader_uniform: float = 0.0
     indicator: float = 0.0
@@ -259,6 +262,7 @@ class Cabin:
             head_yaw=controls.head_yaw,
             head_yaw_valid=controls.head_valid,
             crossing_probability=controls.crossing_probability,
+            crossing_side=controls.crossing_side,
             requested=controls.requested,
             leader_uniform=controls.leader_uniform,
             indicator=controls.indicator,

@@ -15,7 +15,8 @@ from typing import Any
 
 from costeer.devices.wheels.interface import EFFECT_LIFE, WheelLost
 from costeer.devices.wheels.registry import open_wheel
-from costeer.plant.road import adjacent_side, lane_centre
+from costeer.loop.tick import NO_VERDICT
+from costeer.plant.road import lane_centre, lane_exists
 from costeer.records.row import ROW_COLUMNS
 from costeer.runtime.bay import Bay, Opener
 from costeer.runtime.cabin import Cabin, Controls
@@ -150,7 +151,8 @@ class Driving:
     def _controls(self, now: float) -> Controls:
         """What person, head and network say at this step."""
         box, asked = self._mailbox, self._setup.intention == "network"
-        verdict = newest_verdict(box, self._frames.written) if asked else math.nan
+        verdict = newest_verdict(box, self._frames.written) if asked else NO_VERDICT
+        requested = self._requests()
         return Controls(
             steer=box.get("steer"),
             steering=box.get("steering") > 0.5,
@@ -158,8 +160,9 @@ class Driving:
             brake=box.get("brake"),
             head_yaw=box.get("head_yaw"),
             head_valid=sees_head(box, now),
-            crossing_probability=verdict,
-            requested=self._requests(),
+            crossing_probability=verdict.probability,
+            crossing_side=float(self._indicator.side) if requested else verdict.side,
+            requested=requested,
             leader_uniform=float(self._draws[self._leaders % len(self._draws)]),
             indicator=float(self._indicator.side),
         )
@@ -168,8 +171,10 @@ class Driving:
         """Whether the indicator asks for a lane change to where there is a lane."""
         if self._setup.intention != "indicator":
             return False
-        lane = float(self._cabin.memory.row[_LANE])
-        return self._indicator.asks(self._time, adjacent_side(self._road, lane))
+        beside = float(self._cabin.memory.row[_LANE]) + self._indicator.side
+        return self._indicator.asks(self._time) and bool(
+            lane_exists(self._road, beside)
+        )
 
     def _after(self, row: Any) -> None:  # Any: an array of float64
         """Look at what the step gave: leaders, contacts, the course's end, numbers."""

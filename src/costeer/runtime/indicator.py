@@ -66,9 +66,9 @@ class Indicator:
         if changed and abs(offset) < ARRIVED and abs(yaw) < STRAIGHT:
             self.put(0.0, now)
 
-    def asks(self, now: float, side: float) -> bool:
-        """Whether it asks, at this time [s], for the lane on this side."""
-        return self.side == side and now <= self._asked_until
+    def asks(self, now: float) -> bool:
+        """Whether it asks, at this time [s], for the lane on its side."""
+        return self.side != 0.0 and now <= self._asked_until
 
     def forget(self) -> None:
         """Off, as a new trial begins."""

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import math
-
 from costeer.devices.head.source import STALE_AFTER
+from costeer.loop.tick import NO_VERDICT, Verdict
 from costeer.runtime.shared import Mailbox
 
 PAGE_PATIENCE = 1.0
@@ -32,7 +31,8 @@ def sees_head(mailbox: Mailbox, now: float) -> bool:
     return mailbox.get("head_valid") > 0.5 and age <= STALE_AFTER
 
 
-def newest_verdict(mailbox: Mailbox, written: int) -> float:
-    """The network's newest verdict, NaN if it is too many of the `written` rows old."""
-    is_old = written - mailbox.get("verdict_row") > VERDICT_PATIENCE
-    return math.nan if is_old else mailbox.get("crossing_probability")
+def newest_verdict(mailbox: Mailbox, written: int) -> Verdict:
+    """The newest verdict, none if it is too many of the `written` rows old."""
+    if written - mailbox.get("verdict_row") > VERDICT_PATIENCE:
+        return NO_VERDICT
+    return Verdict(mailbox.get("crossing_probability"), mailbox.get("crossing_side"))

@@ -39,6 +39,7 @@ MAILBOX = (
     "head_time",
     "head_lost",
     "crossing_probability",
+    "crossing_side",
     "verdict_row",
     "heartbeat",
     "armed",
@@ -52,7 +53,7 @@ MAILBOX = (
 
 `page_time` is of the last word from a driver's page, `server_time` of the server's own
 life, `head_lost` 1 while there is no tracker of the head, `verdict_row` the number of
-the frame that the probability belongs to,
+the frame that the probability belongs to and `crossing_side` what it is about,
 `heartbeat` of the real-time process, `armed` 1 while the watchdog has to look,
 `watching` 1 once it does, `watched_at` when it last did, `stalled` 1 once it had to
 act, `dismissed` 1 once it may go, and `reading` 1 once the network takes frames.

@@ -18,8 +18,9 @@ from numpy.typing import NDArray
 from costeer.intention.features import NUM_FEATURES, IntentionSample
 from costeer.intention.predictors.chosen import ChosenPredictor, chosen_predictor
 from costeer.intention.wavefront import advance, initial_state, wavefront_weights
-from costeer.loop.outside import Verdicts, sample_of
+from costeer.loop.outside import Ask, Outlook, Verdicts
 from costeer.loop.parameters import DT
+from costeer.loop.tick import Verdict
 from costeer.plant.parameters import RoadParameters
 from costeer.runtime.frame import PLACE
 from costeer.runtime.patience import SERVER_PATIENCE
@@ -43,29 +44,24 @@ class Reader:
     def __init__(
         self, road: RoadParameters, absent: tuple[str, ...], predictor: ChosenPredictor
     ) -> None:
-        self._road = road
         self._make = _asked(predictor, absent)
-        self._after = self._make()
+        self._outlook = Outlook(self._make, road)
         self._time = -1.0
 
     def warm_up(self) -> None:
         """Compile, or load what was compiled, before the first frame."""
         self._make()(IntentionSample(*([math.nan] * NUM_FEATURES)))
 
-    def read(self, frame: NDArray[np.float64]) -> float:
-        """Verdict after one more frame; NaN before the window is full [-].
+    def read(self, frame: NDArray[np.float64]) -> Verdict:
+        """Verdict after one more frame; its number is NaN before the window is full.
 
         A frame whose time does not follow the last one begins a new window.
         """
         now = float(frame[PLACE["time"]])
         if not 0.0 < now - self._time < 1.5 * DT:
-            self._after = self._make()
+            self._outlook.forget()
         self._time = now
-        return self._after(sample_of(frame, self._road))
-
-
-Ask = Callable[[IntentionSample], float]
-"""Verdict after one more sample."""
+        return self._outlook.after(frame)
 
 
 def _asked(predictor: ChosenPredictor, absent: tuple[str, ...]) -> Callable[[], Ask]:
@@ -105,9 +101,11 @@ def run_network(
             next_frame, frames = shared.frames.since(next_frame)
             for frame in frames:
                 if frame[PLACE["run_state"]] == RunState.RUNNING:
-                    probability = reader.read(frame)
+                    said = reader.read(frame)
                     shared.mailbox.put(
-                        crossing_probability=probability, verdict_row=next_frame
+                        crossing_probability=said.probability,
+                        crossing_side=said.side,
+                        verdict_row=next_frame,
                     )
             if not len(frames):
                 time.sleep(INTERVAL)

@@ -4,9 +4,16 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-from costeer.base.array import Flag, Real
+from costeer.base import array as xp
+from costeer.base.array import Flag, Real, compiled
 from costeer.plant.parameters import RoadParameters
-from costeer.plant.road import adjacent_side, cruising_lane, lane_centre
+from costeer.plant.road import (
+    adjacent_side,
+    cruising_lane,
+    distance_to_adjacent_lane,
+    lane_centre,
+    lane_exists,
+)
 
 
 class Measurement(NamedTuple):
@@ -54,6 +61,38 @@ class Measurement(NamedTuple):
     distance_to_adjacent_lane: Real
     road_curvature: Real = 0.0
     road_curvature_slope: Real = 0.0
+
+
+@compiled
+def facing_beyond(road: RoadParameters, measurement: Measurement) -> Measurement:
+    """The same sample with what is on the other side taken for the adjacent lane."""
+    side = -measurement.side
+    return measurement._replace(
+        side=side,
+        distance_to_adjacent_lane=distance_to_adjacent_lane(
+            road, measurement.lateral_position, measurement.lane, side
+        ),
+    )
+
+
+@compiled
+def towards(road: RoadParameters, measurement: Measurement, side: Real) -> Measurement:
+    """The sample with the lane on a side, if there is one, taken for the adjacent lane.
+
+    Args:
+        road: Its lanes.
+        measurement: Of the sensors.
+        side: -1 right, +1 left; 0: as it is [-].
+    """
+    other = facing_beyond(road, measurement)
+    turned = (side == other.side) & lane_exists(road, measurement.lane + side)
+    distance = xp.select(
+        turned, other.distance_to_adjacent_lane, measurement.distance_to_adjacent_lane
+    )
+    return measurement._replace(
+        side=xp.select(turned, side, measurement.side),
+        distance_to_adjacent_lane=distance,
+    )
 
 
 def standing_start(road: RoadParameters) -> Measurement:

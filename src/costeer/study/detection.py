@@ -170,6 +170,15 @@ def _merged(time: np.ndarray, rows: list[int], gap: float) -> list[int]:
     ]
 
 
+def _asked_side(columns: Columns, parameters: MeasureParameters, row: int) -> int:
+    """Side that the verdict of a row was about: the usual one if it is not told."""
+    told = columns.get("crossing_side")
+    if told is not None and told[row] != 0:
+        return int(told[row])
+    lane = int(lanes(columns["lateral_position"][row], parameters))
+    return adjacent_side(parameters, lane)
+
+
 def _judged(
     columns: Columns,
     parameters: MeasureParameters,
@@ -177,8 +186,7 @@ def _judged(
     row: int,
 ) -> Trigger:
     instant = float(columns["time"][row])
-    lane = int(lanes(columns["lateral_position"][row], parameters))
-    direction = adjacent_side(parameters, lane)
+    direction = _asked_side(columns, parameters, row)
     following = [
         crossing.time
         for crossing in crossings
