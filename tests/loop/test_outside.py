@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from costeer.intention.features import DISTANCE
 from costeer.intention.wavefront import crossing_probabilities
 from costeer.intention.weights import load_weights
 from costeer.loop.outside import Verdicts
@@ -25,6 +26,11 @@ Window = NDArray[np.float64]
 def imitation(window: Window) -> float:
     """The network that ships with costeer, called from Python on one window."""
     return float(crossing_probabilities(load_weights().weights, window)[-1])
+
+
+def near_the_line(window: Window) -> float:
+    """A predictor that goes by the distance alone."""
+    return 0.9 if window[-1, DISTANCE] < 0.8 else 0.1
 
 
 @pytest.mark.slow
