@@ -31,7 +31,7 @@ def test_columns_are_those_of_the_public_format_in_its_order() -> None:
     driver_pseudo_work torque_agreement consistent crossing_probability intention mode
     event driver_intention lead_distance lead_velocity lead_lane
     target_lateral_position head_yaw_valid accelerator brake torque_fault road_curvature
-    contact driver_indicator
+    contact driver_indicator crossing_side
     """
     assert [column.name for column in COLUMNS] == published.split()
 
@@ -39,7 +39,7 @@ def test_columns_are_those_of_the_public_format_in_its_order() -> None:
 def test_flags_numbers_of_lanes_and_modes_are_drawn_as_steps() -> None:
     stepped = """
     lane target_lane consistent intention mode event driver_intention lead_lane
-    head_yaw_valid torque_fault contact driver_indicator
+    head_yaw_valid torque_fault contact driver_indicator crossing_side
     """
     assert names(stepped=True) == set(stepped.split())
 

@@ -26,12 +26,13 @@ def test_a_virtual_trial_of_version_1_is_read() -> None:
     assert metadata["driver"] == "virtual, population 2"
     assert metadata["driver_kind"] == "virtual"
     assert metadata["seed"] == 3
-    assert (len(columns), added) == (42, ())
+    assert (len(columns), added) == (43, ())
     assert not columns["torque_fault"].any()  # nothing was over the limit then
     # Nor was there a road with a bend, or anything to hit.
     assert not columns["road_curvature"].any()
     assert not columns["contact"].any()
     assert not columns["driver_indicator"].any()
+    assert not columns["crossing_side"].any()
     # 1.5 s at 70 km/h, 19.44 m/s; the virtual driver holds the speed within a few %.
     assert columns["time"][-1] == pytest.approx(89.0 / 60.0)
     assert columns["longitudinal_position"][-1] == pytest.approx(28.8, rel=0.05)

@@ -35,8 +35,9 @@ def test_verdicts_over_frames_are_those_of_the_trial(
     record: dict[str, NDArray[np.float64]],
 ) -> None:
     reader = Reader(RoadParameters(), (), chosen_predictor())
-    verdicts = [reader.read(frame) for frame in frames_of(record)]
-    np.testing.assert_array_equal(verdicts, record["crossing_probability"])
+    probabilities, sides = zip(*map(reader.read, frames_of(record)), strict=True)
+    np.testing.assert_array_equal(probabilities, record["crossing_probability"])
+    np.testing.assert_array_equal(sides, record["crossing_side"])
     assert (record["lane"] == 0).any()  # both sides were part of it
     assert not record["head_yaw_valid"].all()  # and a lost head
 
@@ -47,9 +48,9 @@ def test_gap_and_restart_begin_a_new_window(
     frames = frames_of(record)[:400]
     reader = Reader(RoadParameters(), (), chosen_predictor())
     for frame in frames[:200]:
-        before = reader.read(frame)
-    after_gap = [reader.read(frame) for frame in frames[205:390]]
-    again = [reader.read(frame) for frame in frames[:180]]
+        before = reader.read(frame).probability
+    after_gap = [reader.read(frame).probability for frame in frames[205:390]]
+    again = [reader.read(frame).probability for frame in frames[:180]]
     assert np.isfinite(before)
     assert np.isnan(after_gap[:179]).all()
     assert np.isfinite(after_gap[179:]).all()

@@ -31,8 +31,8 @@ from tests.runtime.rig import drive_setup
 
 STEPPED = """
 lane target_lane consistent intention mode event driver_intention lead_lane
-head_yaw_valid torque_fault contact driver_indicator run_state fault input_sequence
-wheel_time sent_time strength_factor condition indicator
+head_yaw_valid torque_fault contact driver_indicator crossing_side run_state fault
+input_sequence wheel_time sent_time strength_factor condition indicator
 """
 
 

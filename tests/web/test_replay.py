@@ -106,6 +106,7 @@ def test_the_page_is_told_what_jumps_between_two_samples(replay: Replay) -> None
         "torque_fault",
         "contact",
         "driver_indicator",
+        "crossing_side",
     ]
 
 

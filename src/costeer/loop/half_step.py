@@ -180,17 +180,13 @@ def half_step(
         The new state, whose torque command acts in the next step, and the sample.
     """
     contact = contact_of(
-        parameters.fleet,
-        parameters.road,
-        parameters.car,
-        state.events,
-        measurement,
+        parameters.fleet, parameters.road, parameters.car, state.events, measurement
     )
     now = state.events._replace(contact=contact)
-    seen = towards(parameters.road, measurement, request.side)
+    wrong, road = parameters.mistakes, parameters.road
+    seen = towards(road, measurement, request.side)
     request = request._replace(indicator=seat.action.indicator, side=seen.side)
     limit = xp.select(parameters.assists > 0.5, parameters.column.torque_limit, 0.0)
-    wrong, road = parameters.mistakes, parameters.road
     given = wrong, state.mistakes, road, seen, request, seat.action, state.time
     truly = Heard(seen, request, state.mistakes)
     got = xp.when(wrong.any > 0.5, heard, given, truly)

@@ -30,6 +30,8 @@ LANE_KEEPING = "lane_keeping"
 LANE_CHANGING = "lane_changing"
 MODES = (MANUAL, LANE_KEEPING, LANE_CHANGING)
 
+_ASKED = "of crossing_probability: -1 right, +1 left; 0 in older records"
+
 METHOD_PREFIX = "method_"
 """How the names of columns begin that a method adds to those of every record."""
 
@@ -352,17 +354,12 @@ COLUMNS: tuple[Column, ...] = (
         before=0.0,
     ),
     _code(
-        "crossing_side",
-        "that crossing_probability is about: -1 right, +1 left; 0 in older records",
-        "request.side",
-        "flipped",
-    )._replace(before=0.0),
-    _code(
         "driver_indicator",
         "set by the driver: -1 right, 0 off, +1 left",
         "action.indicator",
         "flipped",
     )._replace(before=0.0),
+    _code("crossing_side", _ASKED, "request.side", "flipped")._replace(before=0.0),
 )
 
 COLUMN_NAMES: tuple[str, ...] = tuple(column.name for column in COLUMNS)

@@ -16,7 +16,7 @@ from typing import Any
 from costeer.devices.wheels.interface import EFFECT_LIFE, WheelLost
 from costeer.devices.wheels.registry import open_wheel
 from costeer.loop.tick import NO_VERDICT
-from costeer.plant.road import lane_centre, lane_exists
+from costeer.plant.road import lane_centre
 from costeer.records.row import ROW_COLUMNS
 from costeer.runtime.bay import Bay, Opener
 from costeer.runtime.cabin import Cabin, Controls
@@ -169,12 +169,9 @@ class Driving:
 
     def _requests(self) -> bool:
         """Whether the indicator asks for a lane change to where there is a lane."""
-        if self._setup.intention != "indicator":
-            return False
-        beside = float(self._cabin.memory.row[_LANE]) + self._indicator.side
-        return self._indicator.asks(self._time) and bool(
-            lane_exists(self._road, beside)
-        )
+        lane = float(self._cabin.memory.row[_LANE])
+        asks = self._indicator.asks(self._time, self._road, lane)
+        return self._setup.intention == "indicator" and asks
 
     def _after(self, row: Any) -> None:  # Any: an array of float64
         """Look at what the step gave: leaders, contacts, the course's end, numbers."""

@@ -10,6 +10,8 @@ from costeer.devices.wheels.interface import (
     WheelReading,
 )
 from costeer.loop.tick import REQUEST_DURATION
+from costeer.plant.parameters import RoadParameters
+from costeer.plant.road import lane_exists
 from costeer.runtime.markers import Marker
 
 _WORDS = {-1.0: "right", 0.0: "off", 1.0: "left"}
@@ -66,9 +68,10 @@ class Indicator:
         if changed and abs(offset) < ARRIVED and abs(yaw) < STRAIGHT:
             self.put(0.0, now)
 
-    def asks(self, now: float) -> bool:
-        """Whether it asks, at this time [s], for the lane on its side."""
-        return self.side != 0.0 and now <= self._asked_until
+    def asks(self, now: float, road: RoadParameters, lane: float) -> bool:
+        """Whether it asks, at this time [s], for a lane on its side that is there."""
+        there = self.side != 0.0 and lane_exists(road, lane + self.side)
+        return there and now <= self._asked_until
 
     def forget(self) -> None:
         """Off, as a new trial begins."""
