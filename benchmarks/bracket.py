@@ -94,10 +94,10 @@ def same(exact: TrialRecord, bracket: TrialRecord) -> bool:
     """
     if bracket.metadata["network_form"] != "bracket":
         raise ValueError("these weights have not passed the check of their bracket")
-    sides = [
+    one, other = (
         np.ma.getdata(record.columns[PROBABILITY]) >= 0.5 for record in (exact, bracket)
-    ]
-    return np.array_equal(*sides) and all(
+    )
+    return np.array_equal(one, other) and all(
         np.ma.getdata(values).tobytes()
         == np.ma.getdata(bracket.columns[name]).tobytes()
         for name, values in exact.columns.items()
