@@ -1,7 +1,8 @@
 r"""Check the bracketed form of a network, and say what it saves in the loop.
 
     python -m benchmarks.bracket --kilometres 3000 --write FILE   # the check
-    python -m benchmarks.bracket --loop 24      # drives bit for bit, driver-s/s
+    python -m benchmarks.bracket --loop 28      # drives bit for bit, driver-s/s
+    python -m benchmarks.bracket --ticks        # single calls from Python
 
 The check is that of `costeer train --check-kilometres` (training/bracket_check.py), for
 weights that are there already, in parts; after each part a line and, with `--write`,
@@ -17,17 +18,22 @@ import argparse
 import time
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from benchmarks.speed.machine import load, processor_name
+from costeer.intention import bracket, wavefront
 from costeer.intention.checked import FACT, shortcomings
+from costeer.intention.features import IntentionSample
+from costeer.intention.starts import OPEN, bracket_weights, initial_state
 from costeer.intention.weights import IntentionNetwork, load_weights, save_weights
 from costeer.loop.scenario import TrialSetup
 from costeer.loop.trial import simulate_trial, trial_duration
 from costeer.methods.conditions import CONDITION_NAMES
 from costeer.records.columns import TrialRecord
 from costeer.training.bracket_check import (
+    BAND,
     CHECK_SEED,
     Tally,
     checked_drives,
@@ -35,11 +41,13 @@ from costeer.training.bracket_check import (
     num_drives,
     with_check,
 )
+from costeer.training.simulation import recorded
 
 PART = 24
 """Drives between two lines."""
 
-LOOP_SEED = 90_002
+LOOP_SEED = 90_004
+QUANTILES = (50, 99, 99.9, 100)
 PROBABILITY = "crossing_probability"
 
 
@@ -86,10 +94,10 @@ def same(exact: TrialRecord, bracket: TrialRecord) -> bool:
     """
     if bracket.metadata["network_form"] != "bracket":
         raise ValueError("these weights have not passed the check of their bracket")
-    sides = [
+    one, other = (
         np.ma.getdata(record.columns[PROBABILITY]) >= 0.5 for record in (exact, bracket)
-    ]
-    return np.array_equal(*sides) and all(
+    )
+    return np.array_equal(one, other) and all(
         np.ma.getdata(values).tobytes()
         == np.ma.getdata(bracket.columns[name]).tobytes()
         for name, values in exact.columns.items()
@@ -133,12 +141,41 @@ def in_loop(options: argparse.Namespace) -> None:
     print(f"{len(setups)} drives, exact and bracket: {differ} differ")
 
 
+def ticks(options: argparse.Namespace) -> None:
+    """Times of the thread of single calls over a drive with guidance; print them."""
+    weights = load_weights(options.weights).weights
+    setup = TrialSetup(seed=LOOP_SEED, condition=CONDITION_NAMES[1])
+    (drive,) = recorded(setup)
+    samples = [IntentionSample(*row) for row in drive.features]
+    exact = wavefront.wavefront_weights(weights)
+    # Any: each form has functions, weights and memory of its own.
+    forms: dict[str, tuple[Any, Any, Any]] = {
+        "180 states": (wavefront.advance, exact, wavefront.initial_state(exact))
+    }
+    for name, band in (
+        ("all windows replayed", OPEN),
+        (f"bracket {tuple(BAND)}", BAND),
+    ):
+        packed = bracket_weights(weights, band)
+        forms[name] = (bracket.advance, packed, initial_state(packed))
+    for name, (advance, packed, state) in forms.items():
+        advance(packed, state, samples[0])
+        times = np.empty(len(samples))
+        for i, sample in enumerate(samples):
+            start = time.thread_time_ns()
+            advance(packed, state, sample)
+            times[i] = 1e-3 * (time.thread_time_ns() - start)
+        told = ", ".join(f"p{q:g} {np.percentile(times, q):.1f}" for q in QUANTILES)
+        print(f"{name}: mean {times.mean():.1f} us, {told}")
+
+
 def main() -> None:
     """Check, or compare in the loop."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--kilometres", type=float, default=0.0)
     parser.add_argument("--write", type=Path, default=None)
     parser.add_argument("--loop", type=int, default=0)
+    parser.add_argument("--ticks", action="store_true")
     parser.add_argument("--seed", type=int, default=CHECK_SEED)
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--weights", type=Path, default=None)
@@ -146,6 +183,8 @@ def main() -> None:
     print(f"{processor_name()}, load {load()}")
     if options.kilometres:
         check(options)
+    if options.ticks:
+        ticks(options)
     if options.loop:
         in_loop(options)
 

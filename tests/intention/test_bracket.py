@@ -14,7 +14,6 @@ from costeer.intention.bracket import advance, watched
 from costeer.intention.features import HEAD_YAW, WINDOW_LENGTH, IntentionSample
 from costeer.intention.gru import crossing_probability
 from costeer.intention.starts import (
-    BAND,
     STRIDE,
     Band,
     bracket_weights,
@@ -26,6 +25,7 @@ from costeer.intention.wavefront import crossing_probabilities
 from tests.intention.lively import lively_weights, needy_weights, signals
 from tests.intention.test_kernel import in_python
 
+BAND = Band(0.05, 0.95)
 NARROW = Band(0.45, 0.55)
 
 

@@ -35,7 +35,7 @@ def near_the_line(window: Window) -> float:
 
 @pytest.mark.slow
 def test_the_network_called_from_outside_drives_the_same_trial() -> None:
-    inside = simulate_trial(SETUP)
+    inside = simulate_trial(SETUP._replace(exact_network=True))
     outside = simulate_trial(SETUP._replace(predictor=imitation))
     assert np.isfinite(inside.columns["crossing_probability"]).any()
     assert list(inside.columns) == list(outside.columns)

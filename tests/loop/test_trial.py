@@ -69,7 +69,7 @@ def test_a_record_has_every_column_and_field_of_the_format() -> None:
     assert tuple(record.columns) == tuple(column.name for column in COLUMNS)
     of_plug_ins = {"method_version", "method_source_hash", "predictor", "torque_faults"}
     of_plug_ins |= {"driver_source_hash", "scenario", "other_cars", "outcome"}
-    of_plug_ins |= {"mistakes"}
+    of_plug_ins |= {"mistakes", "network_form"}
     assert set(record.metadata) == set(METADATA_FIELDS) | of_plug_ins
     assert json.loads(json.dumps(record.metadata)) == record.metadata
 

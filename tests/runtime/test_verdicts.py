@@ -28,7 +28,8 @@ def frames_of(columns: dict[str, NDArray[np.float64]]) -> NDArray[np.float64]:
 
 @pytest.fixture(scope="module")
 def record() -> dict[str, NDArray[np.float64]]:
-    return simulate_trial(SETUP).columns
+    # A person's drive takes exact windows.
+    return simulate_trial(SETUP._replace(exact_network=True)).columns
 
 
 def test_verdicts_over_frames_are_those_of_the_trial(

@@ -8,15 +8,16 @@ from typing import Any
 import numpy as np
 import pytest
 
-from costeer.intention.checked import FACT, has_passed, shortcomings
+from costeer.intention.checked import FACT, passed_band, shortcomings
 from costeer.intention.gru import random_weights
-from costeer.intention.starts import BAND, Band, bracket_weights
+from costeer.intention.starts import Band, bracket_weights
 from costeer.intention.weights import (
     intention_network,
     load_weights,
     save_weights,
 )
 from costeer.training.bracket_check import (
+    BAND,
     Tally,
     check_setup,
     checked_drives,
@@ -33,12 +34,12 @@ NETWORK = intention_network(random_weights(4, 1), {"source": "none"})
 
 def test_weights_pass_only_with_a_check_of_their_own() -> None:
     checked = with_check(NETWORK, GOOD, 5)
-    assert has_passed(checked)
+    assert passed_band(checked) == BAND
     assert checked.facts["source"] == "none"
-    assert not has_passed(NETWORK)
+    assert passed_band(NETWORK) is None
     # Facts of other weights, as a careless fine-tuning would leave them.
     other = intention_network(random_weights(4, 2), checked.facts)
-    assert not has_passed(other)
+    assert passed_band(other) is None
 
 
 @pytest.mark.parametrize(
@@ -51,7 +52,7 @@ def test_weights_pass_only_with_a_check_of_their_own() -> None:
 )
 def test_a_check_may_not_suffice(changed: dict[str, Any], why: str) -> None:
     found = GOOD._replace(**changed)
-    assert not has_passed(with_check(NETWORK, found, 5))
+    assert passed_band(with_check(NETWORK, found, 5)) is None
     (told,) = shortcomings(found._asdict())
     assert why in told
 
@@ -60,19 +61,20 @@ def test_a_check_may_not_suffice(changed: dict[str, Any], why: str) -> None:
 def test_a_fact_that_lacks_something_is_no_pass(damage: str) -> None:
     checked = with_check(NETWORK, GOOD, 5)
     del checked.facts[FACT][damage]
-    assert not has_passed(checked)
+    assert passed_band(checked) is None
 
 
-def test_another_band_needs_another_check() -> None:
+@pytest.mark.parametrize(("end", "value"), [("low", 0.6), ("high", 0.4), ("low", -1)])
+def test_a_band_that_does_not_hold_a_half_is_no_pass(end: str, value: float) -> None:
     checked = with_check(NETWORK, GOOD, 5)
-    checked.facts[FACT]["low"] = 0.1
-    assert not has_passed(checked)
+    checked.facts[FACT][end] = value
+    assert passed_band(checked) is None
 
 
 def test_the_file_keeps_the_check(tmp_path: Path) -> None:
     file = tmp_path / "network.npz"
     save_weights(file, with_check(NETWORK, GOOD, 5))
-    assert has_passed(load_weights(file))
+    assert passed_band(load_weights(file)) == BAND
 
 
 def test_half_of_the_drives_are_manual_and_half_take_all_conditions() -> None:
@@ -127,4 +129,3 @@ def test_drives_are_judged_and_the_same_again() -> None:
     assert found.wrong == 0
     assert 0.0 < found.exact < 0.2 * found.verdicts
     assert found.triggers > 5
-    assert list(BAND) == [0.05, 0.95]

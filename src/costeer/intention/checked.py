@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from costeer.intention.starts import BAND
+from costeer.intention.starts import Band
 from costeer.intention.weights import IntentionNetwork
 
 FACT = "bracket"
@@ -18,14 +18,15 @@ LARGEST_MARGIN = 0.75
 """Share of the way to a wrong verdict that may have been seen [-]. Source: assumed."""
 
 
-def has_passed(network: IntentionNetwork) -> bool:
-    """Whether these very weights passed, with the band that is in use."""
+def passed_band(network: IntentionNetwork) -> Band | None:
+    """The band with which these very weights passed; None if they did not."""
     fact: Any = network.facts.get(FACT)  # Any: JSON
     if not isinstance(fact, dict) or fact.get("hash") != network.hash:
-        return False
-    if [fact.get("low"), fact.get("high")] != list(BAND):
-        return False
-    return not shortcomings(fact)
+        return None
+    band = Band(_number(fact, "low"), _number(fact, "high"))
+    if not 0.0 <= band.low < 0.5 < band.high <= 1.0 or shortcomings(fact):
+        return None
+    return band
 
 
 def shortcomings(fact: dict[str, Any]) -> list[str]:

@@ -40,16 +40,14 @@ class Band(NamedTuple):
     """Where the states' verdicts are not believed.
 
     Attributes:
-        low: All states below this probability mean no [-]. Source: assumed; margins
-            are in docs/decisions/0018-bracket.md.
-        high: All states above this probability mean yes [-]. Source: assumed.
+        low: All states below this probability mean no [-].
+        high: All states above this probability mean yes [-].
     """
 
-    low: float = 0.05
-    high: float = 0.95
+    low: float
+    high: float
 
 
-BAND = Band()
 OPEN = Band(low=0.0, high=1.0)
 """Every verdict is exact."""
 

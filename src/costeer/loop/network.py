@@ -13,7 +13,6 @@ from costeer.intention.gru import NetworkWeights
 from costeer.intention.predictors.chosen import ChosenPredictor, chosen_predictor
 from costeer.intention.predictors.registry import OURS
 from costeer.intention.starts import (
-    BAND,
     OPEN,
     Band,
     BracketWeights,
@@ -116,7 +115,7 @@ def network_form(
     thresholds = [each.value for each in known if each.name.endswith(_THRESHOLD)]
     own = any(trial_method(setup) is each for each in (IBHS, MANUAL, *RIVALS))
     usual = all(value == _USUAL for value in thresholds)
-    may = predictor.bracketed and own and usual and not setup.exact_network
+    may = predictor.band is not None and own and usual and not setup.exact_network
     return BRACKET if may else EXACT
 
 
@@ -129,6 +128,7 @@ def trial_network(
     form = network_form(setup, parameters, predictor)
     if form is None or predictor is None:
         return idle_network()
-    band = BAND if form == BRACKET else OPEN
+    checked = predictor.band if form == BRACKET else None
+    band = OPEN if checked is None else checked
     packed = _packed(predictor.hash, str(setup.predictor), setup.weights, band)
     return _empty(packed)

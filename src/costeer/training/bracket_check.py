@@ -27,7 +27,7 @@ from costeer.intention.bracket import watched
 from costeer.intention.checked import FACT, FEWEST_KILOMETRES
 from costeer.intention.features import FEATURES, HEAD_YAW, SAMPLE_RATE, hide
 from costeer.intention.gru import NetworkWeights
-from costeer.intention.starts import BAND, BracketWeights, bracket_weights
+from costeer.intention.starts import Band, BracketWeights, bracket_weights
 from costeer.intention.wavefront import crossing_probabilities
 from costeer.intention.weights import (
     IntentionNetwork,
@@ -42,7 +42,10 @@ from costeer.training.triggers import TriggerParameters, onsets
 FIRST_CHECKED = FIRST_UNSEEN + 100_000
 """Number of the first driver who checks."""
 
-CHECK_SEED = 90_001
+BAND = Band(low=0.005, high=0.99)
+"""That is checked. Source: chosen on seed 90001, see docs/decisions/0018-bracket.md."""
+
+CHECK_SEED = 90_003
 """Of these drivers and of all noise: of nothing else."""
 
 DRIVE = 8.0

@@ -19,11 +19,12 @@ from costeer.base.files import read_whole
 from costeer.base.plugins import refuse_twin
 from costeer.base.registry import Registry
 from costeer.base.sources import plain, source_hash
-from costeer.intention.checked import has_passed
+from costeer.intention.checked import passed_band
 from costeer.intention.features import NUM_FEATURES, WINDOW_LENGTH
 from costeer.intention.gru import NetworkWeights
 from costeer.intention.predictors.interface import Predictor
 from costeer.intention.predictors.registry import OURS, PREDICTORS, predictor
+from costeer.intention.starts import Band
 from costeer.intention.weights import load_weights
 
 ENTRY_POINTS = "costeer.predictors"
@@ -45,14 +46,14 @@ class ChosenPredictor(NamedTuple):
         hash: Of its numbers or sources.
         weights: Of a network that runs compiled; None for one that is called.
         judge: Called with each window; None for a network.
-        bracketed: Whether the network has passed the check of its bracketed form.
+        band: With which the network has passed the check of its bracketed form.
     """
 
     name: str
     hash: str
     weights: NetworkWeights | None = None
     judge: Judge | None = None
-    bracketed: bool = False
+    band: Band | None = None
 
 
 def chosen_predictor(
@@ -113,7 +114,7 @@ def _shipped(wanted: str, weights: str | None, _: tuple[int, int]) -> ChosenPred
             OURS,
             network.hash,
             weights=network.weights,
-            bracketed=has_passed(network),
+            band=passed_band(network),
         )
     found = predictor(wanted, path)
     return ChosenPredictor(wanted, _file_hash(path), judge=_last_of(found))
