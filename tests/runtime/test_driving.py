@@ -161,6 +161,21 @@ def test_indicator_asks_for_a_lane_change_to_the_lane_that_is_there(
     assert of(frames, "indicator")[-1] == -1.0
 
 
+def test_indicator_asks_for_either_lane_where_there_are_lanes_on_both_sides(
+    rig: MakeRig,
+) -> None:
+    setup = drive_setup(parameters=(("road.num_lanes", 3.0),))
+    drive = rig(setup._replace(intention="indicator"))
+    drive.ask("start")
+    drive.ask("indicator", -1)
+    frames = drive.steps(900)
+    assert of(frames, "lane")[-1] == of(frames, "target_lane")[-1] == 1.0
+    drive.ask("indicator", 1)  # back, although one could overtake on
+    frames = drive.steps(30)
+    assert of(frames, "target_lane")[-1] == 2.0
+    assert of(frames, "crossing_side")[2] == 1.0
+
+
 def test_indicator_of_one_trial_asks_for_nothing_in_the_next(rig: MakeRig) -> None:
     drive = rig(drive_setup()._replace(intention="indicator"))
     drive.ask("start")

@@ -165,3 +165,17 @@ def test_an_inference_that_stays_silent_misses_everything() -> None:
 
 def test_missing_columns_are_named() -> None:
     assert detect(changes(PLAN)) == "needs the column intention, not recorded"
+
+
+def test_a_trigger_is_judged_by_the_side_that_it_was_about() -> None:
+    columns = drive(11.0, 31.0)
+    usual = [trigger.direction for trigger in judged(columns).triggers]
+    assert usual == [RIGHT, LEFT]
+    rows = columns["time"].size
+    told = columns | {"crossing_side": np.zeros(rows, np.int8)}
+    assert judged(told) == judged(columns)  # older records do not tell it
+    wrong = columns | {"crossing_side": np.full(rows, LEFT, np.int8)}
+    assert [(t.direction, t.verdict) for t in judged(wrong).triggers] == [
+        (LEFT, FALSE),
+        (LEFT, TRUE),
+    ]

@@ -152,7 +152,9 @@ class Driving:
         """What person, head and network say at this step."""
         box, asked = self._mailbox, self._setup.intention == "network"
         verdict = newest_verdict(box, self._frames.written) if asked else NO_VERDICT
-        requested = self._requests()
+        lane = float(self._cabin.memory.row[_LANE])
+        asks = self._indicator.asks(self._time, self._road, lane)
+        requested = asks and self._setup.intention == "indicator"
         return Controls(
             steer=box.get("steer"),
             steering=box.get("steering") > 0.5,
@@ -161,17 +163,11 @@ class Driving:
             head_yaw=box.get("head_yaw"),
             head_valid=sees_head(box, now),
             crossing_probability=verdict.probability,
-            crossing_side=float(self._indicator.side) if requested else verdict.side,
+            crossing_side=self._indicator.side if requested else verdict.side,
             requested=requested,
             leader_uniform=float(self._draws[self._leaders % len(self._draws)]),
-            indicator=float(self._indicator.side),
+            indicator=self._indicator.side,
         )
-
-    def _requests(self) -> bool:
-        """Whether the indicator asks for a lane change to where there is a lane."""
-        lane = float(self._cabin.memory.row[_LANE])
-        asks = self._indicator.asks(self._time, self._road, lane)
-        return self._setup.intention == "indicator" and asks
 
     def _after(self, row: Any) -> None:  # Any: an array of float64
         """Look at what the step gave: leaders, contacts, the course's end, numbers."""
