@@ -54,7 +54,8 @@ PROBABILITY = "crossing_probability"
 def known(network: IntentionNetwork, seed: int) -> Tally:
     """What the facts say of drives with this seed."""
     fact = network.facts.get(FACT, {})
-    if fact.get("hash") != network.hash or fact.get("seed") != seed:
+    wanted = {"hash": network.hash, "seed": seed, **BAND._asdict()}
+    if any(fact.get(name) != value for name, value in wanted.items()):
         return Tally()
     return Tally(**{name: fact[name] for name in Tally._fields})
 
