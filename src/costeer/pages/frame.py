@@ -137,7 +137,8 @@ def render_page(
         lstrip_blocks=True,
     )
     css, js = (
-        Markup(home.get_source(environment, file)[0]) for file in ("page.css", "page.js")
+        Markup(home.get_source(environment, file)[0])
+        for file in ("page.css", "page.js")
     )
     page = environment.get_template(template)
     first = _item(opening, 1) if opening is not None else None
@@ -145,9 +146,7 @@ def render_page(
     return page.render(css=css, js=js, opening=first, sections=numbered, **words)
 
 
-def _numbered(
-    sections: Sequence[Section], num_figures: int
-) -> list[dict[str, object]]:
+def _numbered(sections: Sequence[Section], num_figures: int) -> list[dict[str, object]]:
     """The sections with tables and figures counted through the page."""
     num_tables = 0
     numbered: list[dict[str, object]] = []

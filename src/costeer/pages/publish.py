@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import itertools
+import math
 
 import matplotlib as mpl
 from matplotlib.axes import Axes
@@ -24,7 +25,7 @@ NARROWEST_MM, WIDEST_MM = 60.0, 210.0
 _DPI = 600
 """Of a PNG: what journals ask of drawings of lines."""
 
-_STEP_MM = 5.0
+_STEP_MM, _HIGHEST_MM = 5.0, 240.0
 _STACKED_BELOW = 0.62
 """Share of its own width under which panels in a row are put below each other."""
 
@@ -51,8 +52,8 @@ def published(exhibit: Exhibit, width_mm: float | None, kind: str) -> bytes:
         _fit(exhibit.name, figure, width_mm)
     if kind == "svg":
         return svg_text(figure, exhibit.name, exhibit.title).encode()
-    told = {"Title": exhibit.title}
-    told |= {"CreationDate": None} if kind == "pdf" else {"Software": None}
+    undated = "CreationDate" if kind == "pdf" else "Software"
+    told: dict[str, str | None] = {"Title": exhibit.title, undated: None}
     file = io.BytesIO()
     with mpl.rc_context({"pdf.fonttype": 42}):  # letters that journals can search
         figure.savefig(file, format=kind, dpi=_DPI, metadata=told)
@@ -69,13 +70,14 @@ def _fit(name: str, figure: Figure, width_mm: float) -> None:
     set_width(figure, width_mm)
     if width_mm >= own or legible(figure):
         return
-    wider = width_mm
-    while wider < own and not legible(figure):
-        wider = min(wider + _STEP_MM, own)
-        set_width(figure, wider)
+    narrow, wide = width_mm, own
+    while wide - narrow > _STEP_MM:
+        middle = (narrow + wide) / 2.0
+        set_width(figure, middle)
+        narrow, wide = (narrow, middle) if legible(figure) else (middle, wide)
     raise ValueError(
         f"figure {name} is not legible at {width_mm:g} mm: its words would meet; "
-        f"it needs {wider:g} mm"
+        f"it needs {math.ceil(wide)} mm"
     )
 
 
@@ -89,10 +91,14 @@ def set_width(figure: Figure, width_mm: float) -> None:
     old = float(figure.get_figwidth()) * MM_PER_INCH
     height = float(figure.get_figheight()) * MM_PER_INCH
     figure.set_figwidth(width_mm / MM_PER_INCH)
-    if grid.nrows == 1 and grid.ncols > 1 and width_mm < _STACKED_BELOW * old:
+    narrow = grid.nrows == 1 and width_mm < _STACKED_BELOW * old
+    if narrow and 1 < grid.ncols <= _HIGHEST_MM / height:
         _stack(figure, margins, height)
     else:
         place_panels(figure, grid, margins)
+        for each in figure.axes:
+            if (place := each.get_subplotspec()) is not None:
+                each.set_subplotspec(place)
 
 
 def _grid(figure: Figure) -> GridSpec:
@@ -115,10 +121,9 @@ def _stack(figure: Figure, margins: Margins, height: float) -> None:
 
 def legible(figure: Figure) -> bool:
     """Whether all words are inside the figure, and none lies over another."""
-    canvas = FigureCanvasAgg(figure)
-    canvas.draw()
-    renderer = canvas.get_renderer()
-    boxes = [each.get_window_extent(renderer) for each in _words(figure)]
+    FigureCanvasAgg(figure)  # measures words as it draws them
+    figure.draw_without_rendering()
+    boxes = [each.get_window_extent() for each in _words(figure)]
     whole = figure.bbox
     inside = all(
         box.x0 >= -1.0

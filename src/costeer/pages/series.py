@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import csv
 import io
+import itertools
 import json
 import math
 from collections.abc import Iterator, Mapping, Sequence
@@ -68,7 +69,7 @@ class Other(NamedTuple):
 
 
 def say(artist: Artist, name: str, **more: Any) -> None:  # Any: fields of a series
-    """Name what a line, a row of marks or a bar shows; `more` are fields of `Series`."""
+    """Name what a line, marks or a bar show; `more` are fields of `Series`."""
     vars(artist)[_KEY] = Series(name, **more)
 
 
@@ -128,7 +129,7 @@ def table(figure: Figure) -> str:
             zip(*_values(artist, series.across), strict=True)
         ):
             ends = [_at(each, place) for each in (series.low, series.high)]
-            numbers = [_exact(value) for value in (x, y, *ends)]
+            numbers = [_digits(value) for value in (x, y, *ends)]
             point = series.points[place] if series.points else ""
             writer.writerow([panel, *axis_names, series.name, point, *numbers])
     return text.getvalue() if text.getvalue().count("\n") > 1 else ""
@@ -138,8 +139,8 @@ def _at(values: Sequence[float], place: int) -> float:
     return values[place] if values else math.nan
 
 
-def _exact(value: float) -> str:
-    return repr(float(value)) if math.isfinite(value) else ""
+def _digits(value: float) -> str:
+    return f"{value:.6g}" if math.isfinite(value) else ""
 
 
 def _axis_name(figure: Figure, axes: Axes, which: str) -> str:
@@ -148,7 +149,9 @@ def _axis_name(figure: Figure, axes: Axes, which: str) -> str:
     place = axes.get_subplotspec()
     for other in figure.axes if not own and place is not None else ():
         spec = other.get_subplotspec()
-        if spec is None or spec.get_gridspec() is not place.get_gridspec():
+        if spec is None or place is None:
+            continue
+        if spec.get_gridspec() is not place.get_gridspec():
             continue
         if which == "x" and spec.colspan == place.colspan:
             own = other.get_xlabel() or own
@@ -263,17 +266,18 @@ def _path(
         whole, transform = _boxes(*values), axes.get_xaxis_transform()
     else:
         whole, transform = Path(np.column_stack(values)), axes.transData
-    if not len(whole.vertices):
+    if not np.size(whole.vertices):
         return ""
     whole = transform.transform_path(whole)
     whole.simplify_threshold = 0.3
     drawn = whole.cleaned(simplify=True, remove_nans=True)
     places = np.round(_TENTHS * _places(figure, np.asarray(drawn.vertices)))
-    codes = np.asarray(drawn.codes)
     letters = {Path.MOVETO: "M", Path.LINETO: "L"}
     parts = [
         f"{letters[code]}{x / _TENTHS:g} {y / _TENTHS:g}"
-        for code, (x, y) in zip(codes.tolist(), places.tolist(), strict=True)
+        for code, (x, y) in zip(np.asarray(drawn.codes), places.tolist(), strict=True)
         if code in letters
     ]
+    # Simplifying repeats the last point.
+    parts = [each for each, _ in itertools.groupby(parts)]
     return "".join(parts)

@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 
 import numpy as np
+import pandas as pd
 from matplotlib.axes import Axes
-from numpy.typing import NDArray
 
 from costeer.methods.conditions import MANUAL, condition
 from costeer.pages.exhibit import Exhibit, not_drawn
@@ -197,9 +197,11 @@ def _bars(
         mean, half = _interval(material, quantity, factor, name) or (math.nan, math.nan)
         colour = (condition_colour if factor == "condition" else _strength_colour)(name)
         (bar,) = axes.bar(x, mean, width=0.74, color=colour)
-        ends = {} if math.isnan(half) else {"low": (mean - half,), "high": (mean + half,)}
+        ends = (
+            {} if math.isnan(half) else {"low": (mean - half,), "high": (mean + half,)}
+        )
         say(bar, name, **ends)
-        values = own.get(name, np.array([]))
+        values = own.get(name, pd.Series(dtype=float))
         if values.size > 1:
             if values.size <= _MOST_CIRCLES:
                 _participants(axes, x, values, name)
@@ -210,14 +212,12 @@ def _bars(
     return top if top > 0.0 else 1.0
 
 
-def _participants(
-    axes: Axes, x: float, values: NDArray[np.float64], name: str
-) -> None:
+def _participants(axes: Axes, x: float, values: pd.Series[float], name: str) -> None:
     """Circles beside the interval, participants in order from left to right."""
     offsets = np.linspace(-0.29, 0.29, values.size)
     (circles,) = axes.plot(
         x + offsets,
-        values,
+        values.to_numpy(),
         linestyle="none",
         marker="o",
         markersize=2.0,
@@ -226,8 +226,7 @@ def _participants(
         markeredgewidth=0.4,
         alpha=0.75,
     )
-    places = tuple(f"place {place + 1}" for place in range(values.size))
-    say(circles, f"{name}, participants", points=places)
+    say(circles, name, points=tuple(f"participant {who}" for who in values.index))
 
 
 def _strength_colour(name: str) -> str:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from functools import cache
+from functools import cache, partial
 
 from costeer.methods.conditions import STRENGTHS
 from costeer.pages.exhibit import Exhibit, not_drawn
@@ -77,7 +77,7 @@ def _drawings(material: StudyMaterial) -> Iterator[_Drawing]:
     """All drawings in the order of the report."""
     yield (forest.NAME,), lambda: [forest.draw(material)]
     for quantity in QUANTITIES:
-        yield (bars.file_name(quantity),), lambda q=quantity: [bars.draw(material, q)]
+        yield (bars.file_name(quantity),), _one(bars.draw, material, quantity)
     if not material.num_results:
         yield (trajectories.NAME,), lambda: [trajectories.draw(material)]
     scores = tuple(bars.file_name(each) for each in WORKLOAD)
@@ -93,26 +93,23 @@ def _of_records(material: StudyMaterial) -> Iterator[_Drawing]:
     """The figures of single moments, or why they are not drawn."""
     if material.num_results:
         for name, title in OF_RECORDS:
-            yield (name,), lambda n=name, t=title: [not_drawn(n, t, _NO_RECORDS)]
+            yield (name,), _one(not_drawn, name, title, _NO_RECORDS)
         return
-    for strength in STRENGTHS:
-        yield (signals.file_name(strength),), lambda s=strength: [
-            signals.draw(material, s)
-        ]
-    gain_limit = replan_gain(material)
-    no_verdict = why_without(material, "num_inconsistencies")
-    shown = cache(lambda: exemplary_inconsistency(material.records, gain_limit))
-    yield (
-        (inconsistency.NAME,),
-        lambda: [
-            inconsistency.draw(
-                shown(), no_verdict, own_inconsistencies(material.records, gain_limit)
-            )
-        ],
-    )
-    yield (gain.NAME,), lambda: [gain.draw(shown(), gain_limit, no_verdict)]
-    if not no_verdict:
+    for each in STRENGTHS:
+        yield (signals.file_name(each),), _one(signals.draw, material, each)
+    limit, records = replan_gain(material), material.records
+    silent = why_without(material, "num_inconsistencies")
+    shown = cache(lambda: exemplary_inconsistency(records, limit))
+    own = partial(own_inconsistencies, records, limit)
+    yield (inconsistency.NAME,), lambda: [inconsistency.draw(shown(), silent, own())]
+    yield (gain.NAME,), lambda: [gain.draw(shown(), limit, silent)]
+    if not silent:
         yield (timing.NAME,), lambda: [timing.draw(material, disputes(material))]
+
+
+def _one(draw: Callable[..., Exhibit], *of: object) -> Callable[[], Sequence[Exhibit]]:
+    """Draw a single figure, later."""
+    return lambda: [draw(*of)]
 
 
 _NO_RECORDS = (

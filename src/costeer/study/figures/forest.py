@@ -58,13 +58,13 @@ def draw(material: StudyMaterial) -> Exhibit:
     found = {title: rows for title, rows in _panels(material) if rows}
     if not found:
         lacking = (
-            "An effect within subjects needs two participants who drove manually and "
-            "with guidance."
+            "A standardised effect within subjects needs three participants who drove "
+            "manually and with guidance."
         )
         return not_drawn(NAME, TITLE, lacking)
     shown = [q for q in (*QUANTITIES, *WORKLOAD) if any(q in r for r in found.values())]
     figure = new_figure(FULL_WIDTH_MM, 22.0 + _ROW_MM * len(shown))
-    margins = Margins(left=43.0, right=3.0, top=11.0, bottom=11.0, between_columns=4.0)
+    margins = Margins(left=39.0, right=3.0, top=11.0, bottom=11.0, between_columns=4.0)
     shares = [0.6 if title == _BETWEEN else 1.0 for title in found]
     axes = panels(figure, 1, len(found), margins, shares)[0]
     for panel, (title, rows) in zip(axes, found.items(), strict=True):
@@ -73,7 +73,9 @@ def draw(material: StudyMaterial) -> Exhibit:
         panel.tick_params(labelleft=panel is axes[0])
     _share_scale(axes, list(found))
     handles = _legend(list(found.values()))
-    figure.legend(handles=handles, ncols=len(handles), loc="upper right")
+    figure.legend(
+        handles=handles, ncols=len(handles), loc="upper right", handletextpad=0.1
+    )
     caption = _caption(material, _BETWEEN in found)
     return Exhibit(NAME, TITLE, caption, _DESCRIPTION, figure)
 
@@ -82,9 +84,9 @@ _BETWEEN = "strong − weak"
 _COLOURS = {f"{each} − manual": STRENGTH_COLOURS[each] for each in STRENGTHS}
 _COLOURS[_BETWEEN] = INK
 _DESCRIPTION = (
-    "Forest plot with a row for each measure and a panel for each strength of guidance: "
-    "standardised differences from manual driving with 95 % intervals. The differences "
-    "themselves stand in the tables of pairs."
+    "Forest plot with a row for each measure and a panel for each strength of "
+    "guidance: standardised differences from manual driving with 95 % intervals. The "
+    "differences themselves stand in the tables of pairs."
 )
 
 
@@ -107,13 +109,16 @@ def _rows(material: StudyMaterial, levels: Sequence[str], second: str) -> Rows:
     for quantity in (*QUANTITIES, *WORKLOAD):
         found = [pair(material, quantity.name, WITHIN, each, second) for each in levels]
         marks = [
-            _compared(each)
-            for each in found
-            if each is not None and math.isfinite(each.d_av_low + each.d_av_high)
+            _compared(each) for each in found if each is not None and _is_known(each)
         ]
         if marks:
             rows[quantity] = marks
     return rows
+
+
+def _is_known(row: PairRow) -> bool:
+    """Whether there is an interval, and with two participants an unbiased estimate."""
+    return math.isfinite(row.d_av_low + row.d_av_high) and row.hedges_correction > 0.0
 
 
 def _compared(row: PairRow) -> Compared:
@@ -187,7 +192,7 @@ def _legend(panels_found: Sequence[Rows]) -> list[Line2D]:
             marker=marker,
             linestyle="none",
             markersize=3.6,
-            label=f"{name} ({DURATIONS[name]:g} s)" if name else "all its conditions",
+            label=f"{name} ({DURATIONS[name]:g} s)" if name else "all conditions",
         )
         for name, marker in _MARKERS.items()
         if name in drawn
@@ -197,8 +202,8 @@ def _legend(panels_found: Sequence[Rows]) -> list[Line2D]:
 def _caption(material: StudyMaterial, between: bool) -> str:
     participants = material.trials["participant"].nunique()
     both = (
-        f" At the right the two strengths in {' and '.join(_lane_keeping())}, which the "
-        "paper compares by strength."
+        f" At the right the two strengths in {' and '.join(_lane_keeping())}, which "
+        "the paper compares by strength."
         if between
         else ""
     )

@@ -27,7 +27,14 @@ from costeer.study.figures.episodes import Episode, inconsistent_spans
 NAME = "inconsistency"
 TITLE = "One inconsistency, from trigger to recovery"
 
-_HEIGHTS = {"torque": 1.5, "work": 1.2, "gap": 1.2, "state": 0.6, "gain": 1, "path": 1.5}
+_HEIGHTS = {
+    "torque": 1.5,
+    "work": 1.2,
+    "gap": 1.2,
+    "state": 0.6,
+    "gain": 1,
+    "path": 1.5,
+}
 _LABELS = {
     "torque": "Torque\n[N·m]",
     "work": "Pseudo-work\n[W]",
@@ -162,14 +169,14 @@ def _caption(episode: Episode) -> str:
         f"Participant {episode.participant}, condition {episode.condition}. Time from "
         f"the first inconsistent verdict; {trigger}; {recovery}; lowest gain "
         f"{episode.lowest_gain:.3f}. Shaded: verdict inconsistent (torque agreement "
-        "negative and the gap of the pseudo-works above its threshold). Vertical lines: "
+        "negative and the gap of the pseudo-works above its threshold). Upright lines: "
         "trigger, first inconsistent verdict, gain back at 0.95. Guidance torque "
         "is the instructed one, before gain, strength and limit; applied is "
         "what the motor gives. Positive is to the left. Below the re-plan gain a new "
         "plan may be made at every sample, and the mode alternate, until the verdict "
-        "turns; the motor gives next to nothing then. Chosen by rule: the first, in "
-        "order of participants and conditions, that followed a trigger, led to a "
-        "re-plan and recovered, or else the one nearest to that."
+        "turns; the motor gives next to nothing then. The one shown first is chosen by "
+        "rule: the first, in order of participants and conditions, that followed a "
+        "trigger, led to a re-plan and recovered, or else the one nearest to that."
     )
 
 

@@ -113,7 +113,7 @@ def _histogram(
         ]
         for strength in STRENGTHS
     }
-    _, _, drawn = axes.hist(
+    axes.hist(
         list(values.values()),
         bins=bins.tolist(),
         stacked=True,
@@ -121,7 +121,6 @@ def _histogram(
         label=list(values),
         rwidth=0.92,
     )
-    for strength, bars in zip(values, drawn, strict=True):
-        for bar in bars:
-            say(bar, strength)
+    for place, bar in enumerate(axes.patches):
+        say(bar, list(values)[place // (len(bins) - 1)])
     axes.yaxis.set_major_locator(MaxNLocator(integer=True))
