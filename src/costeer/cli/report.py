@@ -54,7 +54,8 @@ def report(
     has a study.yaml are not touched: they hold answers.
 
     With --figure only that figure is written, for a journal: its letters keep their
-    size at every width. It is a PDF in figures/ unless --format and --out say otherwise.
+    size at every width. It is a PDF in figures/ if --format and --out are not
+    given.
 
     Example:
         costeer report out/study

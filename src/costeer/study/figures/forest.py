@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
+from matplotlib.ticker import MaxNLocator
 
 from costeer.methods.conditions import DURATIONS, MANUAL, STRENGTHS, condition
 from costeer.pages.exhibit import Exhibit, not_drawn
@@ -177,8 +178,8 @@ def _share_scale(axes: Sequence[Axes], titles: Sequence[str]) -> None:
         each.set_xlim(low, high)
     for each in axes:
         each.margins(x=0.08)
-        each.locator_params(axis="x", nbins=6)
-        each.set_xlabel("Difference, g_av [–]")
+        each.xaxis.set_major_locator(MaxNLocator(nbins=6, steps=[1, 2, 5, 10]))
+        each.set_xlabel("less ← g_av [–] → more")
 
 
 def _legend(panels_found: Sequence[Rows]) -> list[Line2D]:
