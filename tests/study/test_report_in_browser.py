@@ -150,3 +150,9 @@ def test_without_its_script_the_page_says_the_same(
         )
     assert plain.locator("select, th button").count() == 0
     context.close()
+
+
+def test_a_table_whose_rows_belong_together_does_not_sort(page: Page) -> None:
+    names = column(page, "effects", 1)
+    assert "" in names
+    assert page.locator("#table-effects thead button").count() == 0

@@ -110,7 +110,9 @@
     table.tBodies[0].append(...rows);
   };
   for (const table of document.querySelectorAll("table:not(.prose)")) {
-    if (table.tBodies[0].rows.length < 3) continue;
+    const rows = [...table.tBodies[0].rows];
+    // A row without a name belongs to the one above it.
+    if (rows.length < 3 || rows.some((row) => !row.cells[0].textContent)) continue;
     for (const [column, cell] of [...table.tHead.rows[0].cells].entries()) {
       const button = make("button", { type: "button" }, ...cell.childNodes);
       button.addEventListener("click", () => sort(table, column));

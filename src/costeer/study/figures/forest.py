@@ -24,7 +24,7 @@ from costeer.pages.style import (
 )
 from costeer.study.material import StudyMaterial, conditions_driven, pair
 from costeer.study.outcome import WITHIN, PairRow
-from costeer.study.quantities import BY_STRENGTH, QUANTITIES, WORKLOAD, Quantity
+from costeer.study.quantities import QUANTITIES, WORKLOAD, Quantity
 
 NAME = "effects"
 TITLE = "Effects on all measures"
@@ -203,8 +203,8 @@ def _legend(panels_found: Sequence[Rows]) -> list[Line2D]:
 def _caption(material: StudyMaterial, between: bool) -> str:
     participants = material.trials["participant"].nunique()
     both = (
-        f" At the right the two strengths in {' and '.join(_lane_keeping())}, which "
-        "the paper compares by strength."
+        " At the right the two strengths in lane keeping, which the paper compares by "
+        "strength."
         if between
         else ""
     )
@@ -215,7 +215,3 @@ def _caption(material: StudyMaterial, between: bool) -> str:
         "less than in manual driving, right of it more. Filled: p < 0.05 after "
         f"Benjamini-Hochberg over the comparisons of a measure; open: not.{both}"
     )
-
-
-def _lane_keeping() -> list[str]:
-    return [each.title for each in QUANTITIES if each.name in BY_STRENGTH]
