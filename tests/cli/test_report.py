@@ -141,7 +141,7 @@ def test_the_data_of_a_figure_are_written_beside_it(
         (["--figure", "qqq"], "choose from effects, sdlp"),
         (["--figure", "driver_torque"], "did you mean driver-torque-rms"),
         (["--figure", "agreement"], "nothing to draw figure agreement from"),
-        (["--figure", "workload"], "asked of people only"),
+        (["--figure", "tlx-raw"], "asked of people only"),
         (
             ["--figure", "sdlp", "--width", "20mm"],
             "--width is 20 mm; give 60 to 210 mm",

@@ -66,7 +66,11 @@ def draw_figures(material: StudyMaterial, only: str = "") -> Iterator[Exhibit]:
     """
     for names, draw in _drawings(material):
         if only in ("", *names):
-            yield from (each for each in draw() if only in ("", each.name))
+            yield from (
+                each
+                for each in draw()
+                if only in ("", each.name) or each.figure is None
+            )
 
 
 _Drawing = tuple[tuple[str, ...], Callable[[], Sequence[Exhibit]]]
