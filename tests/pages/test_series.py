@@ -31,7 +31,7 @@ def drawn() -> Figure:
     axes.set_xlim(0.0, 8.0)
     axes.set_ylim(0.0, 4.0)
     axes.set_xlabel("Time [s]")
-    axes.set_ylabel("Way [m]")
+    axes.set_ylabel("less ← way [m] → more")
     return figure
 
 
@@ -52,7 +52,9 @@ def test_the_table_has_a_row_for_every_point_that_was_named() -> None:
         ["mark", "b", "6", "3", "2.5", "3.5"],
         ["bar", "", "4", "3", "", ""],
     ]
-    assert {tuple(row[:3]) for row in rows} == {("", "Time [s]", "Way [m]")}
+    assert {tuple(row[:3]) for row in rows} == {
+        ("", "Time [s]", "less ← way [m] → more")
+    }
 
 
 def test_a_figure_of_which_nothing_was_named_has_no_data() -> None:
@@ -81,7 +83,7 @@ def test_a_panel_is_told_with_its_box_and_limits() -> None:
     box = np.array(panel["box"]) / POINTS_PER_MM
     assert box == pytest.approx([10.0, 10.0, 90.0, 50.0], abs=0.01)
     assert (panel["x"], panel["y"]) == ([0.0, 8.0], [0.0, 4.0])
-    assert panel["names"] == ["Time [s]", "Way [m]"]
+    assert panel["names"] == ["Time [s]", "less ← way [m] → more"]
 
 
 def test_another_participants_line_and_shading_lie_where_theirs_would_be_drawn() -> (

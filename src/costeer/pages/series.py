@@ -11,6 +11,7 @@ import io
 import itertools
 import json
 import math
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 
@@ -27,6 +28,7 @@ from costeer.pages.numerals import MINUS
 
 HEADER = ("panel", "x_axis", "y_axis", "series", "point", "x", "y", "low", "high")
 _KEY = "costeer_series"
+_BRACKETS = re.compile(r"\[([^\]]*)\]")
 _POINTS_PER_INCH = 72.0  # of an SVG of matplotlib
 _TENTHS = 10.0
 """Paths are written in tenths of a point, finer than a screen."""
@@ -237,10 +239,9 @@ def _marks(
 
 
 def _unit(axis_name: str) -> str:
-    """What stands in brackets at the end of an axis' name, after a space."""
-    _, bracket, unit = axis_name.rpartition("[")
-    unit = unit.rstrip("]")
-    return f" {unit}" if bracket and unit not in ("–", "-") else ""
+    """What stands in brackets in an axis' name, after a space."""
+    units = _BRACKETS.findall(axis_name)
+    return f" {units[-1]}" if units and units[-1] not in ("–", "-") else ""
 
 
 def _short(value: float) -> str:
