@@ -109,3 +109,59 @@ def test_a_study_that_is_running_is_left_alone(
     with locked(bare):
         assert main(["report", str(bare)]) == 2
     assert "in use by another costeer" in capsys.readouterr().err
+
+
+def test_one_figure_is_written_and_nothing_else(
+    simulated: Path, tmp_path: Path
+) -> None:
+    before = contents(simulated)
+    out = tmp_path / "speed.PDF"
+    wanted = ["--figure", "driver-torque-rms", "--width", "8.8cm", "--out", str(out)]
+    assert main(["report", str(simulated), *wanted]) == 0
+    assert out.read_bytes().startswith(b"%PDF")
+    assert contents(simulated) == before
+
+
+def test_the_data_of_a_figure_are_written_beside_it(
+    bare: Path, simulated: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    for name in ("trials.csv", "lane_changes.csv", "triggers.csv"):
+        shutil.copy(simulated / name, bare)
+    assert main(["report", str(bare), "--figure", "sdlp", "--format", "csv"]) == 0
+    file = bare / "figures" / "sdlp.csv"
+    assert capsys.readouterr().out == f"{file}\n"
+    assert "strong" not in file.read_text("utf-8")  # weak alone was driven
+    assert "weak-gentle" in file.read_text("utf-8")
+
+
+@pytest.mark.parametrize(
+    ("options", "told"),
+    [
+        (["--figure", "sdpl"], "no figure 'sdpl' (did you mean sdlp?)"),
+        (["--figure", "qqq"], "choose from effects, sdlp"),
+        (["--figure", "driver_torque"], "did you mean driver-torque-rms"),
+        (["--figure", "agreement"], "nothing to draw figure agreement from"),
+        (["--figure", "tlx-raw"], "asked of people only"),
+        (
+            ["--figure", "sdlp", "--width", "20mm"],
+            "--width is 20 mm; give 60 to 210 mm",
+        ),
+        (["--figure", "sdlp", "--width", "nan"], "--width is no number"),
+        (["--figure", "sdlp", "--width", "wide"], "'wide' is not a width"),
+        (["--figure", "sdlp", "--format", "eps"], "choose from pdf, png, svg, csv"),
+        (["--figure", "sdlp", "--out", "a.doc"], "no format 'doc'"),
+        (["--figure", "sdlp", "--format", "pdf", "--out", "a.png"], "ends in .png"),
+        (["--figure", "sdlp", "--format", "csv", "--width", "88"], "have no width"),
+        (["--figure", "signals-weak", "--width", "60"], "not legible at 60 mm"),
+        (["--width", "88mm"], "--width belongs to --figure"),
+    ],
+)
+def test_a_figure_that_cannot_be_is_refused_in_one_line(
+    simulated: Path,
+    capsys: pytest.CaptureFixture[str],
+    options: list[str],
+    told: str,
+) -> None:
+    assert main(["report", str(simulated), *options]) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert told in line

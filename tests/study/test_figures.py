@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import csv
+import io
+import math
 import re
 from collections.abc import Sequence
 
@@ -15,7 +18,9 @@ from matplotlib.text import Text
 from matplotlib.ticker import FixedFormatter, FuncFormatter
 
 from costeer.methods.conditions import CONDITION_NAMES
+from costeer.pages import series
 from costeer.pages.exhibit import Exhibit
+from costeer.pages.publish import published
 from costeer.pages.style import (
     COLUMN_WIDTH_MM,
     FULL_WIDTH_MM,
@@ -25,7 +30,14 @@ from costeer.pages.style import (
     styled,
     svg_text,
 )
-from costeer.study.figures import bars, detection, signals, trajectories, workload
+from costeer.study.figures import (
+    bars,
+    detection,
+    forest,
+    signals,
+    trajectories,
+    workload,
+)
 from costeer.study.figures.catalogue import FIGURE_NAMES
 from costeer.study.figures.colours import condition_colour
 from costeer.study.material import StudyMaterial
@@ -333,3 +345,55 @@ def test_the_participant_shown_is_the_first_with_most_conditions(
     with styled():
         exhibit = signals.draw(material._replace(records=records), "strong")
     assert exhibit.caption.startswith("Participant 2,")
+
+
+def test_the_answer_is_the_paired_difference_in_standard_deviations(
+    material: StudyMaterial, exhibits: list[Exhibit]
+) -> None:
+    (exhibit,) = (each for each in exhibits if each.name == forest.NAME)
+    assert exhibit.figure is not None
+    rows = list(csv.DictReader(io.StringIO(series.table(exhibit.figure))))
+    told = {(row["point"], row["series"]): float(row["x"]) for row in rows}
+    # Of three participants: two degrees of freedom, Hedges' factor 1/sqrt(pi).
+    own = material.trials.pivot_table("sdlp", "participant", "condition")
+    pair = own[["strong-rapid", "manual"]]
+    spread = math.sqrt(float(pair.var().mean()))
+    difference = float((pair["strong-rapid"] - pair["manual"]).mean())
+    expected = difference / spread / math.sqrt(math.pi)
+    # The table holds six digits.
+    assert told["SDLP", "strong-rapid − manual"] == pytest.approx(expected, rel=1e-5)
+    assert len(told) == len(rows) == 7 * 6 + 2 * 2 + 2
+
+
+def test_two_participants_have_no_standardised_effect(material: StudyMaterial) -> None:
+    # Hedges' factor of one degree of freedom is zero: the estimate has no mean.
+    pairs = tuple(r._replace(hedges_correction=0.0) for r in material.tests.pairs)
+    tests = material.tests._replace(pairs=pairs)
+    assert "three participants" in forest.draw(material._replace(tests=tests)).missing
+
+
+def test_figures_of_one_participant_can_be_those_of_each(
+    exhibits: list[Exhibit],
+) -> None:
+    by_name = {each.name: each for each in exhibits}
+    for name in ("signals-strong", "signals-weak", "inconsistency"):
+        others = by_name[name].others
+        assert [each.name for each in others] == ["1", "2", "3"]
+        assert len({each.caption for each in others}) == 3
+        assert by_name[name].caption in {each.caption for each in others}
+
+
+def test_bars_tell_whose_circles_they_have(exhibits: list[Exhibit]) -> None:
+    (exhibit,) = (each for each in exhibits if each.name == "sdlp")
+    assert exhibit.figure is not None
+    points = [
+        r["point"] for r in csv.DictReader(io.StringIO(series.table(exhibit.figure)))
+    ]
+    assert {each for each in points if each} == {f"participant {n}" for n in (1, 2, 3)}
+
+
+@pytest.mark.slow
+def test_a_figure_of_bars_fits_a_column_of_a_journal(material: StudyMaterial) -> None:
+    with styled():
+        for quantity in QUANTITIES:
+            assert published(bars.draw(material, quantity), COLUMN_WIDTH_MM, "pdf")

@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from costeer.cli.console import note, progress
+from costeer.cli.figure import Wanted, checked, write_figure
+from costeer.cli.units import parse_width
 
 if TYPE_CHECKING:
     from costeer.study.people import People
@@ -22,6 +24,26 @@ def report(
         Path | None,
         typer.Option(help="Folder of a study with virtual drivers to compare with."),
     ] = None,
+    figure: Annotated[
+        str | None,
+        typer.Option(help="Write this figure alone, as figures/ names it."),
+    ] = None,
+    width: Annotated[
+        float | None,
+        typer.Option(
+            help="Width of that figure, 60mm to 210mm.",
+            parser=parse_width,
+            metavar="WIDTH",
+        ),
+    ] = None,
+    kind: Annotated[
+        str | None,
+        typer.Option("--format", help="pdf, png, svg, or csv for its data."),
+    ] = None,
+    out: Annotated[
+        Path | None,
+        typer.Option(help="File to write that figure to."),
+    ] = None,
 ) -> None:
     """Rewrite the tables, tests, figures and report.html of a study.
 
@@ -31,8 +53,13 @@ def report(
     pseudonyms. The tables trials.csv and lane_changes.csv of a study with people that
     has a study.yaml are not touched: they hold answers.
 
+    With --figure only that figure is written, for a journal: its letters keep their
+    size at every width. It is a PDF in figures/ if --format and --out are not
+    given.
+
     Example:
         costeer report out/study
+        costeer report out/study --figure sdlp --width 88mm --format pdf --out sdlp.pdf
         costeer report my-study --beside out/study
         costeer report out/compare
     """
@@ -41,13 +68,17 @@ def report(
     from costeer.study.folder import STUDY_FILE
     from costeer.study.report import NUM_STEPS
 
+    wanted = checked(Wanted(figure, width, kind, out))
     if (folder / COMPARE_FILE).is_file():
-        _remake_comparison(folder, beside)
+        _remake_comparison(folder, beside, figure)
         return
     if beside is not None and not (beside / STUDY_FILE).is_file():
         raise ValueError(f"--beside is {beside}, which has no {STUDY_FILE}")
     is_study = (folder / STUDY_FILE).is_file()
     people = None if is_study else _people(folder)
+    if figure is not None:
+        typer.echo(write_figure(folder, wanted, people, beside))
+        return
     apart = {} if people is None else people.apart
     with progress("report", NUM_STEPS * (1 + len(apart))) as advance:
         page = remake_report(folder, lambda _: advance(1), people, beside)
@@ -65,11 +96,12 @@ def report(
         typer.echo(each)
 
 
-def _remake_comparison(folder: Path, beside: Path | None) -> None:
+def _remake_comparison(folder: Path, beside: Path | None, figure: str | None) -> None:
     """Write tables, figures and page of a comparison again.
 
     Raises:
-        ValueError: If it cannot be read, or is to stand beside something.
+        ValueError: If it cannot be read, is to stand beside something, or one figure is
+            asked for.
         OSError: If a file cannot be read or written.
     """
     from costeer.comparison.folder import read_comparison
@@ -81,6 +113,11 @@ def _remake_comparison(folder: Path, beside: Path | None) -> None:
         raise ValueError(
             f"--beside is {beside}, and {folder} is a comparison, which has nothing "
             "beside it; leave --beside out"
+        )
+    if figure is not None:
+        raise ValueError(
+            f"{folder} is a comparison, and --figure is for studies; the figures of a "
+            f"comparison stand in {folder / 'figures'}"
         )
     with progress("report", NUM_STEPS) as advance:
         page = remake_report(folder, lambda _: advance(1))

@@ -41,3 +41,22 @@ def parse_length(text: str | float) -> float:
         raise typer.BadParameter(
             f"{text!r} is not a length; give metres, as 3000, or 3km."
         ) from None
+
+
+def parse_width(text: str | float) -> float:
+    """Return the width of a figure [mm] from `88` (mm), `88mm`, `8.8cm` or `3.5in`.
+
+    Raises:
+        typer.BadParameter: If it is none of these.
+    """
+    if isinstance(text, float):
+        return text
+    word = text.replace(" ", "")
+    endings = {"mm": 1.0, "cm": 10.0, "in": 25.4, "": 1.0}
+    ending = next(each for each in endings if word.endswith(each))
+    try:
+        return float(word.removesuffix(ending)) * endings[ending]
+    except ValueError:
+        raise typer.BadParameter(
+            f"{text!r} is not a width; give millimetres, as 88mm."
+        ) from None

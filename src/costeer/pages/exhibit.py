@@ -6,6 +6,8 @@ from typing import NamedTuple
 
 from matplotlib.figure import Figure
 
+from costeer.pages.series import Other
+
 
 class Exhibit(NamedTuple):
     """One figure of the report.
@@ -17,6 +19,7 @@ class Exhibit(NamedTuple):
         description: What one would tell somebody who does not see it.
         figure: The drawing; None if the study has not what it needs.
         missing: What it lacks, as a sentence; empty if it is drawn.
+        others: The same of other participants, to choose from on the page.
     """
 
     name: str
@@ -25,6 +28,7 @@ class Exhibit(NamedTuple):
     description: str
     figure: Figure | None
     missing: str = ""
+    others: tuple[Other, ...] = ()
 
 
 def not_drawn(name: str, title: str, missing: str) -> Exhibit:

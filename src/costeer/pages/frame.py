@@ -16,6 +16,7 @@ from markupsafe import Markup
 from costeer.base.files import write_text
 from costeer.pages.exhibit import Exhibit
 from costeer.pages.inline import inline_svg
+from costeer.pages.series import page_values, table
 from costeer.pages.style import COLUMN_WIDTH_MM, MM_PER_INCH, svg_text
 from costeer.pages.tables import Table, shortened
 
@@ -29,11 +30,15 @@ class Picture(NamedTuple):
         exhibit: Its words.
         svg: Its drawing; empty if there is none.
         half: Whether two stand side by side.
+        csv: Its data as a table; empty if there are none.
+        values: The same for the page, as JSON.
     """
 
     exhibit: Exhibit
     svg: str
     half: bool
+    csv: str = ""
+    values: str = ""
 
 
 class Section(NamedTuple):
@@ -60,12 +65,14 @@ class Item(NamedTuple):
         table: The table.
         picture: The picture.
         drawing: SVG to put into the page.
+        values: JSON to put beside it.
     """
 
     number: int
     table: Table | None = None
     picture: Picture | None = None
     drawing: Markup = Markup()
+    values: Markup = Markup()
 
 
 def picture(exhibit: Exhibit) -> Picture:
@@ -76,16 +83,18 @@ def picture(exhibit: Exhibit) -> Picture:
     """
     if exhibit.figure is None:
         return Picture(exhibit, "", half=False)
-    svg = svg_text(exhibit.figure, exhibit.name, exhibit.title)
-    width_mm = float(exhibit.figure.get_figwidth()) * MM_PER_INCH
-    words = exhibit._replace(figure=None)
-    return Picture(words, svg, half=width_mm <= COLUMN_WIDTH_MM + 1.0)
+    figure = exhibit.figure
+    values = page_values(figure, exhibit.others)
+    svg = svg_text(figure, exhibit.name, exhibit.title)
+    half = float(figure.get_figwidth()) * MM_PER_INCH <= COLUMN_WIDTH_MM + 1.0
+    words = exhibit._replace(figure=None, others=())
+    return Picture(words, svg, half, table(figure), values)
 
 
 def write_figures(
     folder: Path, pictures: Iterable[Picture], known: Iterable[str] = ()
 ) -> None:
-    """Write every figure that was drawn, and remove those that no longer are.
+    """Write every figure that was drawn and its data; remove what no longer is.
 
     Args:
         folder: Made if it is not there.
@@ -93,12 +102,14 @@ def write_figures(
         known: Figures that an earlier report may have left; every SVG file if empty.
     """
     folder.mkdir(exist_ok=True)
-    drawn = {each.exhibit.name: each.svg for each in pictures if each.svg}
+    drawn = {f"{each.exhibit.name}.svg": each.svg for each in pictures if each.svg}
+    drawn |= {f"{each.exhibit.name}.csv": each.csv for each in pictures if each.csv}
     for name in known or [file.stem for file in folder.glob("*.svg")]:
-        if name not in drawn:
-            (folder / f"{name}.svg").unlink(missing_ok=True)
-    for name, svg in drawn.items():
-        write_text(folder / f"{name}.svg", svg)
+        for file in (f"{name}.svg", f"{name}.csv"):
+            if file not in drawn:
+                (folder / file).unlink(missing_ok=True)
+    for file, text in drawn.items():
+        write_text(folder / file, text)
 
 
 def render_page(
@@ -106,6 +117,7 @@ def render_page(
     sections: Sequence[Section],
     words: dict[str, Any],  # Any: what a template takes
     package: str = _HOME,
+    opening: Picture | None = None,
 ) -> str:
     """Return a page as HTML.
 
@@ -114,6 +126,7 @@ def render_page(
         sections: After the opening.
         words: What the template's own blocks need.
         package: Where the template is, in its folder `templates`.
+        opening: The figure that a template puts before all else, as `opening`.
     """
     home = PackageLoader(_HOME, "templates")
     environment = Environment(
@@ -123,14 +136,19 @@ def render_page(
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    css = Markup(home.get_source(environment, "page.css")[0])
+    css, js = (
+        Markup(home.get_source(environment, file)[0])
+        for file in ("page.css", "page.js")
+    )
     page = environment.get_template(template)
-    return page.render(css=css, sections=_numbered(sections), **words)
+    first = _item(opening, 1) if opening is not None else None
+    numbered = _numbered(sections, int(first is not None and first.number > 0))
+    return page.render(css=css, js=js, opening=first, sections=numbered, **words)
 
 
-def _numbered(sections: Sequence[Section]) -> list[dict[str, object]]:
+def _numbered(sections: Sequence[Section], num_figures: int) -> list[dict[str, object]]:
     """The sections with tables and figures counted through the page."""
-    num_tables = num_figures = 0
+    num_tables = 0
     numbered: list[dict[str, object]] = []
     for section in sections:
         items = []
@@ -138,17 +156,19 @@ def _numbered(sections: Sequence[Section]) -> list[dict[str, object]]:
             if isinstance(each, Table):
                 num_tables += 1
                 items.append(Item(num_tables, table=shortened(each)))
-            elif each.svg:
-                num_figures += 1
-                items.append(Item(num_figures, None, each, _drawing(each)))
             else:
-                items.append(Item(0, None, each))
+                num_figures += bool(each.svg)
+                items.append(_item(each, num_figures))
         numbered.append({**section._asdict(), "contents": items})
     return numbered
 
 
-def _drawing(shown: Picture) -> Markup:
+def _item(shown: Picture, number: int) -> Item:
+    """A picture with its number, or why it is not drawn."""
+    if not shown.svg:
+        return Item(0, None, shown)
     exhibit = shown.exhibit
-    return Markup(
-        inline_svg(shown.svg, exhibit.name, exhibit.title, exhibit.description)
-    )
+    svg = inline_svg(shown.svg, exhibit.name, exhibit.title, exhibit.description)
+    # Inside a script only this letter could begin something else.
+    values = Markup(shown.values.replace("<", "\\u003c"))
+    return Item(number, None, shown, Markup(svg), values)

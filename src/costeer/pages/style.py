@@ -16,6 +16,7 @@ import matplotlib as mpl
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
+from matplotlib.gridspec import GridSpec
 
 COLUMN_WIDTH_MM = 88.0
 FULL_WIDTH_MM = 180.0
@@ -140,30 +141,53 @@ def panels(
         column_widths: Shares of the width, equal if None.
         row_heights: Shares of the height, equal if None.
     """
-    width, height = (float(size) * MM_PER_INCH for size in figure.get_size_inches())
-    inner_width = width - margins.left - margins.right
-    inner_height = height - margins.top - margins.bottom
     grid = figure.add_gridspec(
-        rows,
-        columns,
-        left=margins.left / width,
-        right=1.0 - margins.right / width,
-        top=1.0 - margins.top / height,
-        bottom=margins.bottom / height,
-        wspace=_relative(margins.between_columns, inner_width, columns),
-        hspace=_relative(margins.between_rows, inner_height, rows),
-        width_ratios=column_widths,
-        height_ratios=row_heights,
+        rows, columns, width_ratios=column_widths, height_ratios=row_heights
     )
+    place_panels(figure, grid, margins)
     return [
         [figure.add_subplot(grid[row, column]) for column in range(columns)]
         for row in range(rows)
     ]
 
 
+def place_panels(figure: Figure, grid: GridSpec, margins: Margins) -> None:
+    """Place a grid of panels to the millimetre in a figure of any size."""
+    width, height = (float(size) * MM_PER_INCH for size in figure.get_size_inches())
+    inner_width = width - margins.left - margins.right
+    inner_height = height - margins.top - margins.bottom
+    grid.update(
+        left=margins.left / width,
+        right=1.0 - margins.right / width,
+        top=1.0 - margins.top / height,
+        bottom=margins.bottom / height,
+        wspace=_relative(margins.between_columns, inner_width, grid.ncols),
+        hspace=_relative(margins.between_rows, inner_height, grid.nrows),
+    )
+
+
+def margins_of(figure: Figure, grid: GridSpec) -> Margins:
+    """Return the white space that a grid of panels was placed with."""
+    width, height = (float(size) * MM_PER_INCH for size in figure.get_size_inches())
+    at = grid.get_subplot_params(figure)
+    return Margins(
+        left=at.left * width,
+        right=(1.0 - at.right) * width,
+        top=(1.0 - at.top) * height,
+        bottom=at.bottom * height,
+        between_columns=_gap(at.wspace, (at.right - at.left) * width, grid.ncols),
+        between_rows=_gap(at.hspace, (at.top - at.bottom) * height, grid.nrows),
+    )
+
+
 def _relative(gap: float, inner: float, number: int) -> float:
     """The gap as a share of the mean panel, which is what the grid wants."""
     return gap * number / (inner - gap * (number - 1))
+
+
+def _gap(share: float, inner: float, number: int) -> float:
+    """The gap of a share of the mean panel: `_relative` turned round."""
+    return share * inner / (number + share * (number - 1))
 
 
 def panel_letter(axes: Axes, letter: str) -> None:

@@ -14,7 +14,6 @@ from typing import NamedTuple
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
 from costeer.controller.replanning import ReplanningParameters
 from costeer.methods.conditions import CONDITION_NAMES, MANUAL
@@ -250,7 +249,7 @@ def replan_gain(material: StudyMaterial) -> float:
 
 def participant_means(
     material: StudyMaterial, quantity: Quantity, factor: str
-) -> dict[str, NDArray[np.float64]]:
+) -> dict[str, pd.Series[float]]:
     """Return each participant's mean per level of a factor, in shown units.
 
     Args:
@@ -259,14 +258,14 @@ def participant_means(
         factor: `condition` or `strength`.
 
     Returns:
-        By level, one value per participant who has one, participants in order.
+        By level, one value for each participant who has one, in order.
     """
     table: pd.DataFrame = getattr(material, quantity.table)
     if quantity.name not in table:
         return {}
     means = table.groupby([factor, "participant"])[quantity.name].mean().dropna()
     return {
-        str(level): values.to_numpy(np.float64) * quantity.factor
+        str(level): values.droplevel(0) * quantity.factor
         for level, values in means.groupby(level=0)
     }
 

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from typing import NamedTuple
 
+from costeer.base.described import nearest
 from costeer.base.files import write_text
+from costeer.pages.exhibit import Exhibit
 from costeer.pages.frame import Picture, picture, write_figures
 from costeer.pages.style import styled
 from costeer.study.agreement import AgreementRow, agreement
@@ -90,6 +93,35 @@ def write_report(
     tell("report")
     write_text(path / REPORT_FILE, render(material, pictures))
     return path / REPORT_FILE
+
+
+@contextmanager
+def one_figure(
+    folder: Path, name: str, people: People | None = None, beside: Path | None = None
+) -> Iterator[Exhibit]:
+    """Draw one figure of a study, from the tables that are there, inside the style.
+
+    Args:
+        folder: Of the study.
+        name: One of `FIGURE_NAMES`.
+        people: Whose drives these are; None for a folder with `study.yaml`.
+        beside: Folder of virtual drivers to compare with.
+
+    Raises:
+        ValueError: If there is no such figure, or the study has none.
+    """
+    if name not in FIGURE_NAMES:
+        close = nearest(name.replace("_", "-"), FIGURE_NAMES)
+        known = "" if close else f"; choose from {', '.join(FIGURE_NAMES)}"
+        raise ValueError(f"there is no figure {name!r}{close}{known}")
+    material = read_material(folder, people)
+    if beside is not None:
+        material = material._replace(beside=read_virtual(beside))
+    with styled():
+        found = next(draw_figures(material, name), None)
+        if found is None:
+            raise ValueError(f"{folder} has nothing to draw figure {name} from")
+        yield found
 
 
 def _say_nothing(_: str) -> None:

@@ -9,6 +9,7 @@ from matplotlib.patches import Patch
 from costeer.methods.conditions import CONDITION_NAMES, MANUAL, condition
 from costeer.pages.exhibit import Exhibit, not_drawn
 from costeer.pages.numerals import number
+from costeer.pages.series import say
 from costeer.pages.style import (
     FULL_WIDTH_MM,
     INK,
@@ -27,6 +28,7 @@ NAME = "agreement"
 TITLE = "People beside virtual drivers"
 
 _COLUMNS = 2
+_GROUPS = {"o": "people", "s": "virtual drivers"}
 _APART = 0.17
 """Of people and virtual drivers from the middle of a condition."""
 
@@ -94,7 +96,7 @@ def _draw(axes: Axes, place: int, row: AgreementRow, factor: float) -> None:
         (_APART, row.mean_virtual, row.high_virtual, "s", "white"),
     )
     for shift, mean, upper, marker, filled in groups:
-        axes.errorbar(
+        drawn = axes.errorbar(
             place + shift,
             mean * factor,
             yerr=(upper - mean) * factor,
@@ -105,6 +107,9 @@ def _draw(axes: Axes, place: int, row: AgreementRow, factor: float) -> None:
             linewidth=0.9,
             capsize=1.8,
         )
+        lower = 2.0 * mean - upper
+        ends = {"low": (lower * factor,), "high": (upper * factor,)}
+        say(drawn.lines[0], f"{row.condition}, {_GROUPS[marker]}", **ends)
 
 
 def _legend() -> list[Line2D | Patch]:

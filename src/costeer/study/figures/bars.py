@@ -5,11 +5,12 @@ from __future__ import annotations
 import math
 
 import numpy as np
+import pandas as pd
 from matplotlib.axes import Axes
-from numpy.typing import NDArray
 
 from costeer.methods.conditions import MANUAL, condition
 from costeer.pages.exhibit import Exhibit, not_drawn
+from costeer.pages.series import say
 from costeer.pages.style import (
     COLUMN_WIDTH_MM,
     FAINT,
@@ -195,11 +196,15 @@ def _bars(
     for name, x in places.items():
         mean, half = _interval(material, quantity, factor, name) or (math.nan, math.nan)
         colour = (condition_colour if factor == "condition" else _strength_colour)(name)
-        axes.bar(x, mean, width=0.74, color=colour)
-        values = own.get(name, np.array([]))
+        (bar,) = axes.bar(x, mean, width=0.74, color=colour)
+        ends = (
+            {} if math.isnan(half) else {"low": (mean - half,), "high": (mean + half,)}
+        )
+        say(bar, name, **ends)
+        values = own.get(name, pd.Series(dtype=float))
         if values.size > 1:
             if values.size <= _MOST_CIRCLES:
-                _participants(axes, x, values)
+                _participants(axes, x, values, name)
             interval_bar(axes, (x, mean), True, half, half)
         top = max(top, mean, *(mean + half, values.max()) if values.size > 1 else ())
     axes.set_xlim(min(places.values()) - 0.6, max(places.values()) + 0.6)
@@ -207,12 +212,12 @@ def _bars(
     return top if top > 0.0 else 1.0
 
 
-def _participants(axes: Axes, x: float, values: NDArray[np.float64]) -> None:
+def _participants(axes: Axes, x: float, values: pd.Series[float], name: str) -> None:
     """Circles beside the interval, participants in order from left to right."""
     offsets = np.linspace(-0.29, 0.29, values.size)
-    axes.plot(
+    (circles,) = axes.plot(
         x + offsets,
-        values,
+        values.to_numpy(),
         linestyle="none",
         marker="o",
         markersize=2.0,
@@ -221,6 +226,7 @@ def _participants(axes: Axes, x: float, values: NDArray[np.float64]) -> None:
         markeredgewidth=0.4,
         alpha=0.75,
     )
+    say(circles, name, points=tuple(f"participant {who}" for who in values.index))
 
 
 def _strength_colour(name: str) -> str:

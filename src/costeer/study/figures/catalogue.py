@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Sequence
+from functools import cache, partial
 
 from costeer.methods.conditions import STRENGTHS
 from costeer.pages.exhibit import Exhibit, not_drawn
@@ -11,6 +12,7 @@ from costeer.study.figures import (
     agreement,
     bars,
     detection,
+    forest,
     gain,
     inconsistency,
     signals,
@@ -19,11 +21,15 @@ from costeer.study.figures import (
     trajectories,
     workload,
 )
-from costeer.study.figures.episodes import exemplary_inconsistency
+from costeer.study.figures.episodes import (
+    exemplary_inconsistency,
+    own_inconsistencies,
+)
 from costeer.study.material import StudyMaterial, replan_gain, why_without
 from costeer.study.quantities import QUANTITIES, WORKLOAD
 
 FIGURE_NAMES: tuple[str, ...] = (
+    forest.NAME,
     *(bars.file_name(each) for each in (*QUANTITIES, *WORKLOAD)),
     trajectories.NAME,
     workload.ITEMS_NAME,
@@ -48,41 +54,66 @@ OF_RECORDS = (
 """Name and title of the figures that need every trial's record."""
 
 
-def draw_figures(material: StudyMaterial) -> Iterator[Exhibit]:
+def draw_figures(material: StudyMaterial, only: str = "") -> Iterator[Exhibit]:
     """Draw one figure after the other; call it inside `styled`.
 
     Args:
         material: The study.
+        only: Name of the one that is wanted; all if empty.
 
     Yields:
         Every figure there is, also those for which the study lacks something.
     """
+    for names, draw in _drawings(material):
+        if only in ("", *names):
+            yield from (
+                each
+                for each in draw()
+                if only in ("", each.name) or each.figure is None
+            )
+
+
+_Drawing = tuple[tuple[str, ...], Callable[[], Sequence[Exhibit]]]
+"""Names of figures, and what draws those of them that there are."""
+
+
+def _drawings(material: StudyMaterial) -> Iterator[_Drawing]:
+    """All drawings in the order of the report."""
+    yield (forest.NAME,), lambda: [forest.draw(material)]
     for quantity in QUANTITIES:
-        yield bars.draw(material, quantity)
+        yield (bars.file_name(quantity),), _one(bars.draw, material, quantity)
     if not material.num_results:
-        yield trajectories.draw(material)
-    yield from workload.draw(material)
-    yield detection.draw(material)
+        yield (trajectories.NAME,), lambda: [trajectories.draw(material)]
+    scores = tuple(bars.file_name(each) for each in WORKLOAD)
+    asked = (workload.NAME, *scores, workload.ITEMS_NAME)
+    yield asked, lambda: workload.draw(material)
+    yield (detection.NAME,), lambda: [detection.draw(material)]
     yield from _of_records(material)
-    yield from agreement.draw(material)
-    yield from traffic.draw(material)
+    yield (agreement.NAME,), lambda: agreement.draw(material)
+    yield (traffic.NAME,), lambda: traffic.draw(material)
 
 
-def _of_records(material: StudyMaterial) -> Iterator[Exhibit]:
+def _of_records(material: StudyMaterial) -> Iterator[_Drawing]:
     """The figures of single moments, or why they are not drawn."""
     if material.num_results:
         for name, title in OF_RECORDS:
-            yield not_drawn(name, title, _NO_RECORDS)
+            yield (name,), _one(not_drawn, name, title, _NO_RECORDS)
         return
-    for strength in STRENGTHS:
-        yield signals.draw(material, strength)
-    gain_limit = replan_gain(material)
-    episode = exemplary_inconsistency(material.records, gain_limit)
-    no_verdict = why_without(material, "num_inconsistencies")
-    yield inconsistency.draw(episode, no_verdict)
-    yield gain.draw(episode, gain_limit, no_verdict)
-    if not no_verdict:
-        yield timing.draw(material, disputes(material))
+    for each in STRENGTHS:
+        yield (signals.file_name(each),), _one(signals.draw, material, each)
+    limit, records = replan_gain(material), material.records
+    silent = why_without(material, "num_inconsistencies")
+    shown = cache(lambda: exemplary_inconsistency(records, limit))
+    own = partial(own_inconsistencies, records, limit)
+    yield (inconsistency.NAME,), lambda: [inconsistency.draw(shown(), silent, own())]
+    yield (gain.NAME,), lambda: [gain.draw(shown(), limit, silent)]
+    if not silent:
+        yield (timing.NAME,), lambda: [timing.draw(material, disputes(material))]
+
+
+def _one(draw: Callable[..., Exhibit], *of: object) -> Callable[[], Sequence[Exhibit]]:
+    """Draw a single figure, later."""
+    return lambda: [draw(*of)]
 
 
 _NO_RECORDS = (

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from costeer.methods.conditions import condition
 from costeer.pages.exhibit import Exhibit, not_drawn
+from costeer.pages.series import say
 from costeer.pages.style import (
     FAINT,
     FULL_WIDTH_MM,
@@ -89,7 +90,8 @@ def _cumulative(axes: Axes, leads: dict[str, NDArray[np.float64]]) -> None:
             share = [100.0 * np.mean((values >= at) & (values > 0.0)) for at in lead]
             label = f"{strength} (n = {values.size})"
             line = STRENGTH_LINES[strength]
-            axes.plot(lead, share, color=colour, linestyle=line, label=label)
+            curve = axes.plot(lead, share, color=colour, linestyle=line, label=label)
+            say(curve[0], strength)
     axes.axvline(_HORIZON, color=FAINT, linewidth=0.7)
     axes.set_xlim(0.0, _LONGEST_LEAD)
     axes.set_ylim(0.0, 102.0)
@@ -115,7 +117,9 @@ def _rate_bars(
     for place, name in enumerate(names):
         values = _rates(material, name, column)
         mean, half = float(values.mean()), half_width(values)
-        axes.barh(place, mean, height=0.7, color=condition_colour(name))
+        (bar,) = axes.barh(place, mean, height=0.7, color=condition_colour(name))
+        ends = {"low": (mean - half,), "high": (mean + half,)} if half > 0.0 else {}
+        say(bar, name, across=True, **ends)
         upper = half if np.isfinite(half) else 0.0
         lower = min(upper, mean)
         if upper > 0.0:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -22,6 +23,9 @@ LONGEST_TAIL = 15.0
 
 _BEFORE, _AFTER = 1.0, 2.0
 """Shown around [s]."""
+
+MOST_TO_CHOOSE = 12
+"""Participants to choose from on a page; each makes it larger."""
 
 _Rank = tuple[bool, bool, float]
 """Without a trigger, without recovery, how far above the re-plan gain it stayed."""
@@ -55,7 +59,8 @@ class Episode(NamedTuple):
         recovery: Time at which the gain was back [s]; NaN if it did not come back.
         lowest_gain: Smallest haptic gain [-].
         threshold: δ of the trial [W].
-        columns: The rows from shortly before the trigger to shortly after recovery.
+        window: What to show [s]: from shortly before the trigger to after recovery.
+        columns: The rows of at least that time.
     """
 
     participant: Who
@@ -65,6 +70,7 @@ class Episode(NamedTuple):
     recovery: float
     lowest_gain: float
     threshold: float
+    window: tuple[float, float]
     columns: dict[str, NDArray[Any]]  # of several element types
 
 
@@ -91,6 +97,29 @@ def exemplary_inconsistency(
             if rank == _COMPLETE:
                 return _episode(key, path, found)
     return None if best is None else _episode(best[1], records[best[1]], best[2])
+
+
+def own_inconsistencies(
+    records: dict[tuple[Who, str], Path], replan_gain: float
+) -> list[Episode]:
+    """Return the inconsistency to show of each of the first participants who has one.
+
+    Args:
+        records: Trial records by participant and condition.
+        replan_gain: Gain below which the system plans anew [-].
+    """
+    found = (
+        exemplary_inconsistency(
+            {key: path for key, path in records.items() if key[0] == who}, replan_gain
+        )
+        for who in to_choose(records)
+    )
+    return [each for each in found if each is not None]
+
+
+def to_choose(records: Iterable[tuple[Who, str]]) -> list[Who]:
+    """Participants whose figure a page can show: the first, in order."""
+    return list(dict.fromkeys(who for who, _ in records))[:MOST_TO_CHOOSE]
 
 
 def _ranked(
@@ -152,7 +181,9 @@ def _episode(key: tuple[Who, str], path: Path, found: Inconsistency) -> Episode:
     recovered = found.recovery_time <= LONGEST_TAIL
     length = found.recovery_time if recovered else LONGEST_TAIL
     start = found.start_time if np.isnan(trigger) else trigger
-    shown = (time >= start - _BEFORE) & (time <= found.start_time + length + _AFTER)
+    window = (start - _BEFORE, found.start_time + length + _AFTER)
+    kept = time >= found.start_time - LONGEST_LEAD - _BEFORE
+    kept &= time <= found.start_time + LONGEST_TAIL + _AFTER
     threshold = record.metadata["inconsistency_threshold"]
     return Episode(
         participant=key[0],
@@ -162,5 +193,6 @@ def _episode(key: tuple[Who, str], path: Path, found: Inconsistency) -> Episode:
         recovery=found.start_time + length if recovered else np.nan,
         lowest_gain=found.gain_minimum,
         threshold=float(threshold) if isinstance(threshold, int | float) else np.nan,
-        columns={name: values[shown] for name, values in record.columns.items()},
+        window=window,
+        columns={name: values[kept] for name, values in record.columns.items()},
     )

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from costeer.controller.strength import StrengthParameters, haptic_gain
 from costeer.pages.exhibit import Exhibit, not_drawn
+from costeer.pages.series import say
 from costeer.pages.style import (
     COLUMN_WIDTH_MM,
     FAINT,
@@ -78,7 +79,9 @@ def _description() -> str:
 def _draw_law(axes: Axes, replan_gain: float) -> None:
     time = np.linspace(-1.0, 8.0, 361)
     for (out, back), line in zip(_SWITCHES, _STYLES, strict=True):
-        axes.plot(time, gain_over(time, out, back), color=INK, linestyle=line)
+        law = gain_over(time, out, back)
+        drawn = axes.plot(time, law, color=INK, linestyle=line)
+        say(drawn[0], f"consistent after {back - out:g} s")
     _threshold(axes, replan_gain)
     axes.set_title("Law")
     _note(axes, "Eq. (10)", (0.85, 0.40), "right")
@@ -121,10 +124,12 @@ def _draw_record(axes: Axes, episode: Episode, replan_gain: float) -> None:
             linewidth=0,
         )
     colour = STRENGTH_COLOURS[episode.condition.split("-")[0]]
-    axes.plot(time, episode.columns["haptic_gain"], color=colour, linewidth=1.3)
+    gain = episode.columns["haptic_gain"]
+    say(axes.plot(time, gain, color=colour, linewidth=1.3)[0], "recorded gain")
     _threshold(axes, replan_gain)
     axes.set_title(f"Recorded: participant {episode.participant}, {episode.condition}")
-    _gain_axes(axes, float(time[0]), float(time[-1]))
+    start, end = episode.window
+    _gain_axes(axes, start - episode.onset, end - episode.onset)
 
 
 def _threshold(axes: Axes, replan_gain: float) -> None:

@@ -3,20 +3,21 @@
 from __future__ import annotations
 
 import itertools
-from typing import Any, Literal
+from collections.abc import Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
 from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
 from costeer.pages.exhibit import Exhibit, not_drawn
+from costeer.pages.series import Other, say, spans
 from costeer.pages.style import (
     FAINT,
     FULL_WIDTH_MM,
     INK,
     SHADE,
     SIGNAL_COLOURS,
-    SMALL,
     Margins,
     new_figure,
     panels,
@@ -26,23 +27,63 @@ from costeer.study.figures.episodes import Episode, inconsistent_spans
 NAME = "inconsistency"
 TITLE = "One inconsistency, from trigger to recovery"
 
-_HEIGHTS = (1.5, 1.2, 1.2, 0.7, 1.0, 1.5)
-_STATE_COLOURS = {
-    "consistent": "#f6f6f6",
-    "inconsistent": "#d9d9d9",
-    "lane_keeping": "#f6f6f6",
-    "lane_changing": "#cfe3f1",
+_HEIGHTS = {
+    "torque": 1.5,
+    "work": 1.2,
+    "gap": 1.2,
+    "state": 0.6,
+    "gain": 1,
+    "path": 1.5,
 }
-_WIDTH_OF_LETTER = 0.0105
-"""Of the panel, per letter of a state's name."""
+_LABELS = {
+    "torque": "Torque\n[N·m]",
+    "work": "Pseudo-work\n[W]",
+    "gap": "Gap\n[W]",
+    "state": "State\n[–]",
+    "gain": "Gain $K_h$\n[–]",
+    "path": "Lateral\nposition [m]",
+}
+_STATE = "state"
 
 
-def draw(episode: Episode | None, no_verdict: str = "") -> Exhibit:
+class Trace(NamedTuple):
+    """A line: its panel, its name, how it looks."""
+
+    panel: str
+    name: str
+    colour: str
+    style: str = "-"
+
+
+_DRIVER, _GUIDANCE, _GAP = (SIGNAL_COLOURS[n] for n in ("driver", "guidance", "gap"))
+_TRACES = (
+    Trace("torque", "driver", _DRIVER, "-."),
+    Trace("torque", "guidance", _GUIDANCE),
+    Trace("torque", "applied", _GUIDANCE, ":"),
+    Trace("work", "driver", _DRIVER, "-."),
+    Trace("work", "guidance", _GUIDANCE),
+    Trace("gap", "gap", _GAP),
+    Trace("gap", "threshold", _GAP, ":"),
+    Trace("state", "inconsistent", FAINT),
+    Trace("state", "lane changing", "#7fb2d6"),
+    Trace("gain", "gain", INK),
+    Trace("path", "car", INK),
+    Trace("path", "target", INK, ":"),
+)
+_SHADED, _MOMENTS = "shaded", "moments"
+
+Values = dict[str, tuple[NDArray[Any], NDArray[Any]]]
+
+
+def draw(
+    episode: Episode | None, no_verdict: str = "", others: Sequence[Episode] = ()
+) -> Exhibit:
     """Draw one inconsistency, or say that there was none.
 
     Args:
         episode: An inconsistency of the study.
         no_verdict: Why there is no verdict in any trial; empty if there are some.
+        others: One of each participant, to choose from.
     """
     if episode is None:
         why = "No verdict was inconsistent in any trial of this study."
@@ -50,18 +91,67 @@ def draw(episode: Episode | None, no_verdict: str = "") -> Exhibit:
             why = f"There is no verdict in this study: {no_verdict}."
         return not_drawn(NAME, TITLE, why)
     figure = new_figure(FULL_WIDTH_MM, 150.0)
-    margins = Margins(left=20.0, right=25.0, top=7.0, bottom=10.0, between_rows=3.0)
-    grid = panels(figure, len(_HEIGHTS), 1, margins, row_heights=_HEIGHTS)
-    axes = [row[0] for row in grid]
-    time = episode.columns["time"] - episode.onset
-    _torques(axes[0], time, episode)
-    _pseudo_works(axes[1], time, episode)
-    _gap(axes[2], time, episode)
-    _states(axes[3], time, episode)
-    _gain(axes[4], time, episode)
-    _position(axes[5], time, episode)
-    _common(axes, time, episode)
-    return Exhibit(NAME, TITLE, _caption(episode), _description(episode), figure)
+    margins = Margins(left=20.0, right=25.0, top=4.0, bottom=10.0, between_rows=3.0)
+    heights = tuple(_HEIGHTS.values())
+    grid = panels(figure, len(heights), 1, margins, row_heights=heights)
+    axes = dict(zip(_HEIGHTS, (row[0] for row in grid), strict=True))
+    window = _window([episode, *others])
+    values = [_values(each, window) for each in others]
+    _draw(axes, _values(episode, window), values)
+    _limits(axes, window)
+    figure.align_ylabels(list(axes.values()))
+    chosen = tuple(
+        Other(str(each.participant), _caption(each), own)
+        for each, own in zip(others, values, strict=True)
+    )
+    words = _caption(episode)
+    return Exhibit(NAME, TITLE, words, _description(), figure, others=chosen)
+
+
+def _window(episodes: Sequence[Episode]) -> tuple[float, float]:
+    """From the earliest start to the latest end, seconds from each onset."""
+    starts = [each.window[0] - each.onset for each in episodes]
+    ends = [each.window[1] - each.onset for each in episodes]
+    return min(starts), max(ends)
+
+
+def _values(episode: Episode, window: tuple[float, float]) -> Values:
+    """All that is drawn of an episode, by key."""
+    since = episode.columns["time"] - episode.onset
+    shown = (since >= window[0]) & (since <= window[1])
+    columns = {name: values[shown] for name, values in episode.columns.items()}
+    time, guidance = since[shown], columns["guidance_pseudo_work"]
+    changing = columns["mode"] == "lane_changing"
+    lines = {
+        "torque driver": columns["driver_torque"],
+        "torque guidance": columns["instructed_torque"],
+        "torque applied": columns["applied_torque"],
+        "work driver": columns["driver_pseudo_work"],
+        "work guidance": guidance,
+        "gap gap": np.abs(guidance - columns["driver_pseudo_work"]),
+        "gap threshold": np.full(len(time), episode.threshold),
+        "state inconsistent": _flag(~np.ma.filled(columns["consistent"], True), 1.0),
+        "state lane changing": _flag(changing, 0.0),
+        "gain gain": columns["haptic_gain"],
+        "path car": columns["lateral_position"],
+        "path target": columns["target_lateral_position"],
+    }
+    moments = np.array([episode.trigger, episode.recovery]) - episode.onset
+    moments = moments[np.isfinite(moments)]
+    shaded = np.array(inconsistent_spans(columns)).reshape(-1, 2) - episode.onset
+    values: Values = {name: (time, each) for name, each in lines.items()}
+    half = 0.001 * (window[1] - window[0])
+    values[_SHADED] = shaded[:, 0], shaded[:, 1]
+    values[_MOMENTS] = moments - half, moments + half
+    for name, panel in itertools.product((_SHADED, _MOMENTS), _HEIGHTS):
+        values[f"{panel} {name}"] = values[name]
+    return values
+
+
+def _flag(flags: NDArray[np.bool_], height: float) -> NDArray[np.float64]:
+    """A line at that height while a flag holds, until the first row after it."""
+    held = flags | np.concatenate(([False], flags[:-1]))
+    return np.where(held, height, np.nan)
 
 
 def _caption(episode: Episode) -> str:
@@ -79,162 +169,65 @@ def _caption(episode: Episode) -> str:
         f"Participant {episode.participant}, condition {episode.condition}. Time from "
         f"the first inconsistent verdict; {trigger}; {recovery}; lowest gain "
         f"{episode.lowest_gain:.3f}. Shaded: verdict inconsistent (torque agreement "
-        "negative and the gap of the pseudo-works above its threshold). Guidance "
-        "torque is the instructed one, before gain, strength and limit; applied is "
+        "negative and the gap of the pseudo-works above its threshold). Upright lines: "
+        "trigger, first inconsistent verdict, gain back at 0.95. Guidance torque "
+        "is the instructed one, before gain, strength and limit; applied is "
         "what the motor gives. Positive is to the left. Below the re-plan gain a new "
         "plan may be made at every sample, and the mode alternate, until the verdict "
-        "turns; the motor gives next to nothing then. Chosen by rule: the first, in "
-        "order of participants and conditions, that followed a trigger, led to a "
-        "re-plan and recovered, or else the one nearest to that."
+        "turns; the motor gives next to nothing then. The one shown first is chosen by "
+        "rule: the first, in order of participants and conditions, that followed a "
+        "trigger, led to a re-plan and recovered, or else the one nearest to that."
     )
 
 
-def _description(episode: Episode) -> str:
+def _description() -> str:
     return (
-        "Six stacked signals against time around one inconsistency of participant "
-        f"{episode.participant} in {episode.condition}: driver, guidance and applied "
-        "torque; the two pseudo-works; their gap against the threshold; verdict and "
-        "mode; haptic gain; lateral position and target."
+        "Six stacked signals against time around one inconsistency: driver, guidance "
+        "and applied torque; the two pseudo-works; their gap against the threshold; "
+        "verdict and mode; haptic gain; lateral position and target."
     )
 
 
-def _torques(axes: Axes, time: NDArray[np.float64], episode: Episode) -> None:
-    columns = episode.columns
-    lines = {
-        "driver": (columns["driver_torque"], SIGNAL_COLOURS["driver"], "-."),
-        "guidance": (columns["instructed_torque"], SIGNAL_COLOURS["guidance"], "-"),
-        "applied": (columns["applied_torque"], SIGNAL_COLOURS["guidance"], ":"),
-    }
-    _lines(axes, time, lines)
-    _zero(axes)
-    axes.set_ylabel("Torque\n[N·m]")
+def _draw(axes: dict[str, Axes], own: Values, others: Sequence[Values]) -> None:
+    """Draw lines and shading; every panel is high enough for all participants."""
+    for trace in _TRACES:
+        panel, key = axes[trace.panel], f"{trace.panel} {trace.name}"
+        look: dict[str, Any] = {"color": trace.colour, "linestyle": trace.style}
+        if trace.panel == _STATE:
+            look |= {"linewidth": 5.0, "solid_capstyle": "butt"}
+        else:
+            look |= {"label": trace.name}
+        say(panel.plot(*own[key], **look)[0], trace.name, key=key)
+        for each in others:
+            panel.update_datalim(np.column_stack(each[key]))
+    for name, panel in axes.items():
+        panel.autoscale_view()
+        if name != _STATE:
+            spans(panel, *own[_SHADED], SHADE, key=f"{name} {_SHADED}")
+        spans(panel, *own[_MOMENTS], FAINT, key=f"{name} {_MOMENTS}")
+        panel.axvline(0.0, color=FAINT, linewidth=0.7, zorder=0)
+        panel.set_ylabel(_LABELS[name])
+        if len(panel.get_legend_handles_labels()[1]) > 1:
+            panel.legend(loc="center left", bbox_to_anchor=(1.005, 0.5))
 
 
-def _pseudo_works(axes: Axes, time: NDArray[np.float64], episode: Episode) -> None:
-    columns = episode.columns
-    lines = {
-        "driver": (columns["driver_pseudo_work"], SIGNAL_COLOURS["driver"], "-."),
-        "guidance": (columns["guidance_pseudo_work"], SIGNAL_COLOURS["guidance"], "-"),
-    }
-    _lines(axes, time, lines)
-    _zero(axes)
-    axes.set_ylabel("Pseudo-work\n[W]")
-
-
-def _gap(axes: Axes, time: NDArray[np.float64], episode: Episode) -> None:
-    columns = episode.columns
-    gap = np.abs(columns["guidance_pseudo_work"] - columns["driver_pseudo_work"])
-    threshold = np.full(len(time), episode.threshold)
-    lines = {
-        "gap": (gap, SIGNAL_COLOURS["gap"], "-"),
-        "threshold": (threshold, SIGNAL_COLOURS["gap"], ":"),
-    }
-    _lines(axes, time, lines)
-    axes.set_ylim(bottom=0.0)
-    axes.set_ylabel("Gap\n[W]")
-
-
-def _states(axes: Axes, time: NDArray[np.float64], episode: Episode) -> None:
-    """Two strips, verdict above mode, with the name of each state in it."""
-    consistent = np.ma.filled(episode.columns["consistent"], True)
-    verdict = np.where(consistent, "consistent", "inconsistent")
-    _strip(axes, time, verdict, 1.0)
-    _strip(axes, time, episode.columns["mode"], 0.0)
-    axes.axhline(1.0, color="white", linewidth=2.0)
-    axes.set_ylim(0.0, 2.0)
-    axes.set_yticks([0.5, 1.5], ["mode", "verdict"])
-    axes.tick_params(axis="y", length=0)
-    for side in ("left", "bottom"):
-        axes.spines[side].set_visible(False)
-    axes.set_ylabel("State\n[–]")
-
-
-def _strip(
-    axes: Axes, time: NDArray[np.float64], states: NDArray[np.str_], floor: float
-) -> None:
-    edges = [0, *(np.flatnonzero(states[1:] != states[:-1]) + 1), len(states) - 1]
-    for start, end in itertools.pairwise(edges):
-        name, low, high = str(states[start]), time[start], time[end]
-        colour = _STATE_COLOURS.get(name, "white")
-        axes.barh(floor, high - low, 1.0, low, align="edge", color=colour)
-        text = name.replace("_", " ")
-        if high - low > _WIDTH_OF_LETTER * len(text) * (time[-1] - time[0]):
-            place = (low + high) / 2.0, floor + 0.47
-            axes.text(*place, text, size=SMALL, ha="center", va="center")
-
-
-def _gain(axes: Axes, time: NDArray[np.float64], episode: Episode) -> None:
-    axes.plot(time, episode.columns["haptic_gain"], color=INK)
-    axes.set_ylim(0.0, 1.05)
-    axes.set_yticks([0.0, 0.5, 1.0])
-    axes.set_ylabel("Gain $K_h$\n[–]")
-
-
-def _position(axes: Axes, time: NDArray[np.float64], episode: Episode) -> None:
-    columns = episode.columns
-    lines = {
-        "car": (columns["lateral_position"], INK, "-"),
-        "target": (columns["target_lateral_position"], INK, ":"),
-    }
-    _lines(axes, time, lines)
-    low, high = axes.get_ylim()
+def _limits(axes: dict[str, Axes], window: tuple[float, float]) -> None:
+    for name in ("torque", "work"):
+        axes[name].axhline(0.0, color=FAINT, linewidth=0.5, zorder=0)
+    axes["gap"].set_ylim(bottom=0.0)
+    axes["gain"].set_ylim(0.0, 1.05)
+    axes["gain"].set_yticks([0.0, 0.5, 1.0])
+    states = axes[_STATE]
+    states.set_ylim(-0.6, 1.6)
+    states.yaxis.tick_right()
+    states.set_yticks([0.0, 1.0], ["lane changing", "inconsistent"])
+    states.tick_params(axis="y", length=0)
+    low, high = axes["path"].get_ylim()
     if low < -1.75 < high:
-        axes.axhline(-1.75, color=FAINT, linewidth=0.7, linestyle=(0, (6.0, 4.0)))
-    axes.set_ylabel("Lateral\nposition [m]")
-
-
-def _lines(
-    axes: Axes,
-    time: NDArray[np.float64],
-    lines: dict[str, tuple[NDArray[Any], str, str]],
-) -> None:
-    """Draw signals, named at the right of the panel."""
-    for name, (values, colour, line) in lines.items():
-        axes.plot(time, values, color=colour, linestyle=line, label=name)
-    axes.legend(loc="center left", bbox_to_anchor=(1.005, 0.5))
-
-
-def _zero(axes: Axes) -> None:
-    axes.axhline(0.0, color=FAINT, linewidth=0.5, zorder=0)
-
-
-def _common(axes: list[Axes], time: NDArray[np.float64], episode: Episode) -> None:
-    """Time axis, shading and the moments that matter, the same in every panel."""
-    for start, end in inconsistent_spans(episode.columns):
-        for panel in axes[:3] + axes[4:]:
-            panel.axvspan(
-                start - episode.onset,
-                end - episode.onset,
-                facecolor=SHADE,
-                zorder=-1,
-                linewidth=0,
-            )
-    moments = {
-        "trigger": episode.trigger,
-        "inconsistent": episode.onset,
-        "recovered": episode.recovery,
-    }
-    for name, moment in moments.items():
-        if np.isfinite(moment):
-            _mark(axes, moment - episode.onset, name)
-    for panel in axes:
-        panel.set_xlim(time[0], time[-1])
-        panel.tick_params(labelbottom=panel is axes[-1])
-    axes[0].figure.align_ylabels(axes)
-    axes[-1].set_xlabel("Time since the verdict turned inconsistent [s]")
-
-
-def _mark(axes: list[Axes], moment: float, name: str) -> None:
-    # Trigger and onset may be close: their words lean away from each other.
-    align: Literal["left", "right"] = "right" if name == "trigger" else "left"
-    for panel in axes:
-        panel.axvline(moment, color=FAINT, linewidth=0.7, zorder=0)
-    axes[0].annotate(
-        name,
-        xy=(moment, 1.0),
-        xycoords=("data", "axes fraction"),
-        xytext=(0.0, 2.0),
-        textcoords="offset points",
-        fontsize=SMALL,
-        ha=align,
-    )
+        line = (0, (6.0, 4.0))
+        axes["path"].axhline(-1.75, color=FAINT, linewidth=0.7, linestyle=line)
+    *_, last = axes.values()
+    for panel in axes.values():
+        panel.set_xlim(*window)
+        panel.tick_params(labelbottom=panel is last)
+    last.set_xlabel("Time since the verdict turned inconsistent [s]")

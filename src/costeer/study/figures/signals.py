@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from costeer.methods.conditions import MANUAL, condition
 from costeer.pages.exhibit import Exhibit, not_drawn
+from costeer.pages.series import Other, say, spans
 from costeer.pages.style import (
     FAINT,
     FULL_WIDTH_MM,
@@ -25,7 +26,7 @@ from costeer.records.record import read_record
 from costeer.study.crossings import RIGHT
 from costeer.study.definitions import MeasureParameters
 from costeer.study.figures.colours import condition_colour
-from costeer.study.figures.episodes import falls, rises
+from costeer.study.figures.episodes import falls, rises, to_choose
 from costeer.study.lanes import centre, lines
 from costeer.study.material import StudyMaterial
 from costeer.study.people import Who
@@ -57,6 +58,9 @@ SIGNALS = (
 )
 _ONLY_ASSISTED = ("applied_torque", "haptic_gain")
 _UNIT_RANGE = ("haptic_gain", "crossing_probability")
+_SHADED = "lane changing"
+
+Values = dict[str, tuple[NDArray[np.float64], NDArray[Any]]]
 
 
 class Moment(NamedTuple):
@@ -89,17 +93,53 @@ def draw(material: StudyMaterial, strength: str) -> Exhibit:
     figure = new_figure(FULL_WIDTH_MM, 178.0 / len(SIGNALS) * len(shown))
     margins = Margins(left=18.0, top=10.0, bottom=10.0, between_columns=5.0)
     grid = panels(figure, len(shown), len(assisted), margins)
+    others = {
+        each: _values(_moments(material, each, strength), assisted)
+        for each in to_choose(material.records)
+    }
+    own = _values(moments, assisted)
     for column, key in enumerate(assisted):
         axes = dict(zip(shown, (row[column] for row in grid), strict=True))
-        _draw_column(axes, key, moments[key], moments.get(MANUAL))
+        _draw_column(axes, key, own, list(others.values()))
     for signal, row in zip(shown, grid, strict=True):
         _share_range(row, signal, material.road)
     figure.align_ylabels([row[0] for row in grid])
     handles = _legend(strength, MANUAL in moments)
     figure.legend(handles=handles, ncols=len(handles), loc="upper right")
-    caption = _caption(participant, strength, MANUAL in moments) + _left_out(shown)
-    description = _description(participant, strength)
-    return Exhibit(name, shown_title, caption, description, figure)
+    left_out = _left_out(shown)
+    caption = _caption(participant, strength, MANUAL in moments) + left_out
+    chosen = tuple(
+        Other(str(who), _caption(who, strength, _has_manual(each)) + left_out, each)
+        for who, each in others.items()
+        if each
+    )
+    description = _description(strength)
+    return Exhibit(name, shown_title, caption, description, figure, others=chosen)
+
+
+def _values(moments: dict[str, Moment], assisted: list[str]) -> Values:
+    """All that is drawn of a participant, by panel and what it is."""
+    values: Values = {}
+    for key in assisted:
+        for signal in SIGNALS:
+            for name in (key, MANUAL):
+                if name in moments:
+                    y = moments[name].columns[signal.column] * signal.factor
+                    values[f"{signal.column} {key} {name}"] = (moments[name].time, y)
+            if key in moments:
+                shaded = _changing(moments[key])
+                values[f"{signal.column} {key} {_SHADED}"] = shaded
+    return values
+
+
+def _has_manual(values: Values) -> bool:
+    return any(key.endswith(f" {MANUAL}") for key in values)
+
+
+def _changing(moment: Moment) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Starts and ends of the mode lane changing [s]."""
+    changing = moment.columns["mode"] == "lane_changing"
+    return moment.time[rises(changing)], moment.time[falls(changing)]
 
 
 def _told(moments: list[Moment]) -> list[Signal]:
@@ -127,14 +167,14 @@ def _caption(participant: Who, strength: str, with_manual: bool) -> str:
         f"with {strength} guidance; time from the crossing of the lane line. {manual}"
         "Shaded: mode lane changing. Guidance torque is what the motor gives. Left is "
         "positive; lateral position is measured from the left lane's centre, dashed is "
-        "a line between two lanes. Chosen by rule: the first participant with the "
-        "most conditions driven."
+        "a line between two lanes. The one shown first is chosen by rule: the first "
+        "participant with the most conditions driven."
     )
 
 
-def _description(participant: Who, strength: str) -> str:
+def _description(strength: str) -> str:
     return (
-        f"Signals of participant {participant} against time, a column of panels "
+        "Signals of one participant against time, a column of panels "
         f"for each duration of {strength} guidance, each over the manual drive."
     )
 
@@ -175,15 +215,22 @@ def _moment(path: Path, crossing: float) -> Moment:
 
 
 def _draw_column(
-    axes: dict[Signal, Axes], key: str, assisted: Moment, manual: Moment | None
+    axes: dict[Signal, Axes], key: str, own: Values, others: list[Values]
 ) -> None:
-    changing = assisted.columns["mode"] == "lane_changing"
+    """Draw one condition; every panel is high enough for all participants."""
     *_, last = axes.values()
+    colours = {MANUAL: STRENGTH_COLOURS[MANUAL], key: condition_colour(key)}
     for signal, panel in axes.items():
-        _shade(panel, assisted.time, changing)
-        if manual is not None and signal.column not in _ONLY_ASSISTED:
-            _line(panel, manual, signal, STRENGTH_COLOURS[MANUAL])
-        _line(panel, assisted, signal, condition_colour(key))
+        place = f"{signal.column} {key}"
+        spans(panel, *own[f"{place} {_SHADED}"], SHADE, key=f"{place} {_SHADED}")
+        for name, colour in colours.items():
+            line = f"{place} {name}"
+            if line not in own or (name == MANUAL and signal.column in _ONLY_ASSISTED):
+                continue
+            say(panel.plot(*own[line], color=colour)[0], name, key=line)
+            for each in others:
+                panel.update_datalim(np.column_stack(each.get(line, ((), ()))))
+        panel.autoscale_view()
         panel.axvline(0.0, color=FAINT, linewidth=0.5, zorder=0)
         panel.set_xlim(-_BEFORE, _AFTER)
         panel.set_xticks([-8, -4, 0, 4, 8])
@@ -193,16 +240,6 @@ def _draw_column(
         f"{chosen.duration} ({chosen.change_duration:g} s)"
     )
     last.set_xlabel("Time from crossing [s]")
-
-
-def _line(panel: Axes, moment: Moment, signal: Signal, colour: str) -> None:
-    values = moment.columns[signal.column] * signal.factor
-    panel.plot(moment.time, values, color=colour)
-
-
-def _shade(panel: Axes, time: NDArray[np.float64], changing: NDArray[np.bool_]) -> None:
-    for start, end in zip(rises(changing), falls(changing), strict=True):
-        panel.axvspan(time[start], time[end], facecolor=SHADE, linewidth=0, zorder=-1)
 
 
 def _lane_ticks(road: MeasureParameters) -> list[float]:

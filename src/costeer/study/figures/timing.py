@@ -10,6 +10,7 @@ from matplotlib.ticker import MaxNLocator
 
 from costeer.methods.conditions import MANUAL, STRENGTHS
 from costeer.pages.exhibit import Exhibit, not_drawn
+from costeer.pages.series import say
 from costeer.pages.style import (
     FAINT,
     FULL_WIDTH_MM,
@@ -88,7 +89,9 @@ def _per_change(axes: Axes, material: StudyMaterial) -> None:
             continue
         mean, half = float(values.mean()), half_width(values)
         reach = max(reach, mean, np.nan_to_num(mean + half))
-        axes.barh(place, mean, height=0.74, color=condition_colour(name))
+        (bar,) = axes.barh(place, mean, height=0.74, color=condition_colour(name))
+        ends = {"low": (mean - half,), "high": (mean + half,)} if half > 0.0 else {}
+        say(bar, name, across=True, **ends)
         if np.isfinite(half):
             interval_bar(axes, (mean, place), False, min(half, mean), half)
     axes.set_yticks(range(len(names)))
@@ -118,4 +121,6 @@ def _histogram(
         label=list(values),
         rwidth=0.92,
     )
+    for place, bar in enumerate(axes.patches):
+        say(bar, list(values)[place // (len(bins) - 1)])
     axes.yaxis.set_major_locator(MaxNLocator(integer=True))

@@ -9,6 +9,7 @@ from matplotlib.lines import Line2D
 from numpy.typing import NDArray
 
 from costeer.pages.exhibit import Exhibit, not_drawn
+from costeer.pages.series import say
 from costeer.pages.style import (
     FULL_WIDTH_MM,
     STRENGTH_COLOURS,
@@ -75,7 +76,8 @@ def _cumulative(
             below = 100.0 * np.arange(own.size + 1) / own.size
             steps = np.concatenate([below, below[-1:]])
             line = STRENGTH_LINES[strength]
-            axes.step(places, steps, where="post", color=colour, linestyle=line)
+            curve = axes.step(places, steps, where="post", color=colour, linestyle=line)
+            say(curve[0], strength)
     axes.set_xlim(0.0, longest)
     axes.set_ylim(0.0, 102.0)
     axes.set_xlabel(label)

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from costeer.methods.conditions import CONDITIONS, DURATIONS, MANUAL
 from costeer.pages.exhibit import Exhibit, not_drawn
+from costeer.pages.series import say
 from costeer.pages.style import (
     FAINT,
     FULL_WIDTH_MM,
@@ -258,7 +259,8 @@ def _draw_means(
         line = STRENGTH_LINES[chosen.strength]
         low, high = mean.position - mean.half_width, mean.position + mean.half_width
         axes.fill_between(TIME, low, high, color=colour, alpha=0.22, linewidth=0)
-        axes.plot(TIME, mean.position, color=colour, linestyle=line, linewidth=1.1)
+        curve = axes.plot(TIME, mean.position, color=colour, ls=line, linewidth=1.1)
+        say(curve[0], chosen.name, low=tuple(low), high=tuple(high))
     axes.axvline(0.0, color=FAINT, linewidth=0.5, zorder=0)
     axes.set_xlim(TIME[0], TIME[-1])
     axes.set_xticks([-4, -2, 0, 2, 4, 6])

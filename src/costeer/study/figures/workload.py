@@ -8,6 +8,7 @@ from matplotlib.axes import Axes
 
 from costeer.methods.conditions import MANUAL, condition
 from costeer.pages.exhibit import Exhibit, not_drawn
+from costeer.pages.series import say
 from costeer.pages.style import (
     FULL_WIDTH_MM,
     SMALL,
@@ -85,7 +86,9 @@ def _panel(axes: Axes, item: Quantity, tests: StudyTests) -> None:
     ]
     for place, row in enumerate(rows):
         if math.isfinite(row.mean):
-            axes.bar(place, row.mean, width=0.74, color=condition_colour(row.level))
+            colour = condition_colour(row.level)
+            (bar,) = axes.bar(place, row.mean, width=0.74, color=colour)
+            say(bar, row.level, low=(row.low,), high=(row.high,))
             _interval(axes, place, row)
         if row.level != MANUAL:
             axes.annotate(

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from costeer.pages.frame import Picture, render_page
+from costeer.study.figures import forest
 from costeer.study.material import StudyMaterial, is_virtual
 from costeer.study.reporting import findings, overview
 from costeer.study.reporting.comparisons import shown_quantities
@@ -25,8 +26,10 @@ def render(material: StudyMaterial, pictures: Sequence[Picture]) -> str:
         "outcomes": _outcomes(material),
         "meaning": findings.meaning(material),
     }
-    sections = page_sections(material, {each.exhibit.name: each for each in pictures})
-    return render_page("report.html", sections, words, "costeer.study")
+    by_name = {each.exhibit.name: each for each in pictures}
+    sections = page_sections(material, by_name)
+    first = by_name[forest.NAME]
+    return render_page("report.html", sections, words, "costeer.study", first)
 
 
 def _outcomes(material: StudyMaterial) -> list[tuple[str, str]]:
