@@ -49,7 +49,7 @@ check: dev
 	$(BIN)/ruff check .
 	$(BIN)/mypy --strict src
 	$(BIN)/lint-imports --no-logo
-	$(BIN)/mkdocs build --strict --quiet --site-dir out/site
+	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --strict --quiet --site-dir out/site
 
 bench: bench-env
 	$(BIN)/costeer bench
@@ -66,7 +66,7 @@ page: base
 lock: dev
 	$(COMPILE) requirements/installer.in -o requirements/installer.lock
 	$(COMPILE) $(BASE) --extra jax --extra train --extra drive --extra can --extra lsl \
-		--extra cluster --extra sensitivity --extra dev -o requirements/dev.lock
+		--extra cluster --extra sensitivity --extra gym --extra fmu --extra dev -o requirements/dev.lock
 	$(COMPILE) $(BASE) -c requirements/dev.lock -o requirements/base.lock
 	$(COMPILE) $(BASE) -c requirements/dev.lock --extra bench -o requirements/bench.lock
 	$(COMPILE) requirements/page.in -o requirements/page.lock

@@ -14,7 +14,6 @@ from tests.architecture.source import ROOT, files, nodes
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]
 
 PEERS = {
-    "gymnasium": "highway-env",
     "highway_env": "highway-env",
     "vehiclemodels": "commonroad-vehicle-models",
 }

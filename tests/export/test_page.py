@@ -21,8 +21,9 @@ def test_the_code_of_the_page_runs(
     write_mcap(record, tmp_path / "out" / "trial.mcap")
     monkeypatch.chdir(tmp_path)
     blocks = re.findall(r"^```python\n(.*?)^```", PAGE.read_text("utf-8"), re.M | re.S)
-    assert len(blocks) == 2
+    assert len(blocks) == 3
     names: dict[str, list[float]] = {}
     for block in blocks:
         exec(block, names)
+    assert (tmp_path / "out" / "guidance.fmu").stat().st_size > 0
     assert names["gains"] == record.columns["haptic_gain"].tolist()
