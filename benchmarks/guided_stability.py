@@ -60,8 +60,9 @@ STYLES = {
 }
 
 HEADER = (
-    "car      km/h  drivers  run  K constant: damping  below 0.1  as it is: damping  at rad/s  "
-    "below 0.1  free: deg  kept  driven: deg  kept  hunting: deg    m  swinging"
+    "car      km/h  drivers  run  K constant: damping  below 0.1  as it is: damping  "
+    "at rad/s  below 0.1  free: deg  kept  driven: deg  kept  hunting: deg    m  "
+    "swinging"
 )
 
 

@@ -81,9 +81,11 @@ def test_corrections_hide_no_oscillation_of_their_size() -> None:
         assert kept_after_a_period(hidden + cycle) > MOST_KEPT
 
 
-def test_one_late_burst_is_no_growing_oscillation() -> None:
-    signal = corrections(1)
-    signal[round(90.0 / DT) : round(91.0 / DT)] += 10.0
+@pytest.mark.parametrize("seed", range(5))
+def test_one_large_correction_at_the_end_is_no_growing_oscillation(seed: int) -> None:
+    signal, shape = corrections(seed), np.hanning(round(0.8 / DT))
+    at = round(91.0 / DT)
+    signal[at : at + len(shape)] += 40.0 * shape
     assert kept_after_a_period(signal) < MOST_KEPT
 
 
