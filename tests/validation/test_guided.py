@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 
 from costeer.drivers.driver import DriverParameters
 from costeer.drivers.population import (
@@ -19,6 +20,7 @@ from costeer.loop.trial import idle_network
 from costeer.methods.ibhs import IBHS
 from costeer.plant.parameters import CARS
 from costeer.records.row import ROW_COLUMNS
+from costeer.validation import guided
 from costeer.validation.driver_loop import (
     STATES,
     linear_core,
@@ -122,6 +124,23 @@ def test_a_swing_that_only_just_decays_is_found_in_the_drive(
     # Without noise it comes to rest; noise keeps it alive at its own period.
     assert np.all((found.damping_ratio > 0.0) & (found.damping_ratio < LEAST_DAMPING))
     assert lasts(found.driven, MOST_SWING).all()
+
+
+def test_what_falls_into_line_by_chance_is_driven_again(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    driver = guided_parameters("default", SLOW)
+    lengths: list[int] = []
+    shares = iter([0.6, 0.2, 0.6, 0.6, 0.2])
+
+    def told(_: object, noise: NDArray[np.float64]) -> Wheel:
+        lengths.append(len(noise))
+        return Wheel(2.0 * MOST_SWING, next(shares))
+
+    monkeypatch.setattr(guided, "wheel", told)
+    found = [guided.driven_wheel(driver, 101, 1).kept for _ in range(3)]
+    assert found == [0.2, 0.6, 0.2]
+    assert [round(n * DT) for n in lengths] == [120, 300, 120, 300, 120]
 
 
 def test_each_look_alone_makes_a_driver_swing() -> None:
