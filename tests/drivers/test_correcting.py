@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 import pytest
 
@@ -38,17 +36,7 @@ def judged(error: float, seconds: float, parameters: CorrectingParameters) -> li
     return due
 
 
-def test_evidence_follows_its_equation() -> None:
-    # A' = r (|e| / e_0 - 1) - A / τ rises to r τ (|e| / e_0 - 1) (1 - exp(-t / τ)).
-    evidence, error = 0.0, -0.35
-    for _ in range(90):
-        evidence = correcting.gathered(GATHERS, evidence, error, DT)
-    wanted = 2.0 * 1.0 * (0.35 / 0.2 - 1.0) * (1.0 - math.exp(-1.5))
-    assert evidence == pytest.approx(wanted, rel=0.01)
-
-
-def test_no_evidence_gathers_within_the_usual_error() -> None:
-    assert correcting.gathered(GATHERS, 0.0, 0.199, DT) == 0.0
+def test_no_plan_is_given_up_within_the_usual_error() -> None:
     assert judged(0.19, 20.0, GATHERS) == []
 
 

@@ -11,8 +11,8 @@ import pytest
 from numpy.typing import NDArray
 
 from costeer.drivers.driver import DriverParameters
+from costeer.drivers.evidence import gathered
 from costeer.drivers.population import SECOND, participant_driver
-from costeer.drivers.tolerance import gathered
 from costeer.loop.noise import driver_noise
 from costeer.loop.parameters import DT, LoopParameters
 from costeer.loop.rollout import rollout
@@ -204,12 +204,13 @@ def test_a_sluggish_driver_is_seen_by_both_looks() -> None:
 def test_what_is_let_go_is_where_the_evidence_is_never_complete(speed: float) -> None:
     driver = participant_driver(PILOT_SEED, 5, speed)
     own, near = driver.tolerance, speed * driver.vision.near_time
+    rule = own.evidence_rate, own.band, own.forgetting_time
     for share, corrects in ((0.49, False), (0.51, True)):  # half of it: no drift
         beside = share * let_go(driver, speed)
         asked = driver.vision.near_gain / speed * math.atan(beside / near)
         evidence = 0.0
         for _ in range(round(1000.0 / DT)):
-            evidence = gathered(own, evidence, asked, DT)
+            evidence = min(gathered(*rule, evidence, asked, DT), 1.0)
         assert (evidence == 1.0) is corrects
     assert let_go(participant_driver(PILOT_SEED, 5, speed, SECOND), speed) == 0.0
 

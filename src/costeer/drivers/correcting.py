@@ -14,6 +14,7 @@ from costeer.base import array as xp
 from costeer.base.array import Flag, Real, compiled
 from costeer.base.bezier import path_point
 from costeer.drivers.decision import DecisionState
+from costeer.drivers.evidence import gathered
 from costeer.drivers.tracking import TrackingState
 from costeer.sensing.measurement import Measurement
 
@@ -66,23 +67,6 @@ def initial_state() -> CorrectingState:
 
 
 @compiled
-def gathered(
-    parameters: CorrectingParameters, evidence: Real, error: Real, dt: Real
-) -> Real:
-    """Evidence one step later, A' = r (|e| / e_0 - 1) - A / τ, never negative [-].
-
-    Args:
-        parameters: r, e_0 and τ.
-        evidence: A [-].
-        error: e, from the own path [m].
-        dt: Control step [s].
-    """
-    beyond = xp.absolute(error) / parameters.usual_error - 1.0
-    rate = parameters.evidence_rate * beyond - evidence / parameters.forgetting_time
-    return xp.maximum(evidence + rate * dt, 0.0)
-
-
-@compiled
 def paced(parameters: CorrectingParameters, state: CorrectingState, way: Real) -> Real:
     """Duration of a path over the way that is left [s].
 
@@ -122,14 +106,16 @@ def step(
     here = path_point(aimed.path, measurement.longitudinal_position)
     wanted = here.lateral_position + aimed.wander
     error = measurement.lateral_position - wanted
-    evidence = gathered(parameters, state.evidence, error, dt)
+    rate, usual = parameters.evidence_rate, parameters.usual_error
+    rule = rate, usual, parameters.forgetting_time
+    evidence = gathered(*rule, state.evidence, error, dt)
     time = state.time_in_plan + dt
     due = (steered != 0.0) & (evidence >= 1.0) & (time >= parameters.pause)
     due = due & xp.logical_not(decided.started)
     begins = decided.started | due
     way = xp.absolute(aimed.path.y5 - measurement.lateral_position)
-    usual = xp.select(decided.started, decided.change_duration, state.duration)
-    duration = xp.select(due, paced(parameters, state, way), usual)
+    planned = xp.select(decided.started, decided.change_duration, state.duration)
+    duration = xp.select(due, paced(parameters, state, way), planned)
     return CorrectingState(
         evidence=xp.select(begins | (steered == 0.0), 0.0, evidence),
         time_in_plan=xp.select(begins, 0.0, time),

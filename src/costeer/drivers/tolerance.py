@@ -16,6 +16,7 @@ from typing import NamedTuple
 from costeer.base import array as xp
 from costeer.base.array import Flag, Real, compiled
 from costeer.base.filters import low_pass
+from costeer.drivers.evidence import gathered
 
 
 class ToleranceParameters(NamedTuple):
@@ -68,23 +69,6 @@ def initial_state() -> ToleranceState:
 
 
 @compiled
-def gathered(
-    parameters: ToleranceParameters, evidence: Real, offset: Real, dt: Real
-) -> Real:
-    """Evidence one step later, A' = r (|offset| / b - 1) - A / τ, within 0 and 1 [-].
-
-    Args:
-        parameters: r, b and τ.
-        evidence: A [-].
-        offset: Of the intended angle from what is seen to be needed [rad].
-        dt: Control step [s].
-    """
-    beyond = xp.absolute(offset) / xp.maximum(parameters.band, 1e-9) - 1.0
-    rate = parameters.evidence_rate * beyond - evidence / parameters.forgetting_time
-    return xp.clip(evidence + rate * dt, 0.0, 1.0)
-
-
-@compiled
 def step(
     parameters: ToleranceParameters,
     state: ToleranceState,
@@ -106,7 +90,9 @@ def step(
     lag = parameters.movement_time / 3.0
     resting = low_pass(state.intended, trim, dt, lag)
     missing = resting - asked
-    evidence = xp.select(always, 1.0, gathered(parameters, state.evidence, missing, dt))
+    rule = parameters.evidence_rate, parameters.band, parameters.forgetting_time
+    beyond = xp.minimum(gathered(*rule, state.evidence, missing, dt), 1.0)
+    evidence = xp.select(always, 1.0, beyond)
     attends = (evidence >= 1.0) | (state.attends & (evidence > 0.0))
     kept = low_pass(state.offset, 0.0, dt, lag)
     offset = xp.select(attends, kept, missing)

@@ -132,6 +132,7 @@ def trial_metadata(
     configuration = json.loads(json.dumps(_as_dict(told)))
     configuration["setup"] = _as_dict(setup)
     configuration["setup"]["scenario"] = _as_dict(scenario_named(setup.scenario))
+    configuration["setup"]["guided_before"] = _learnt_from(setup, parameters.driver)
     text = json.dumps(configuration, sort_keys=True)
     condition, method = trial_condition(setup), trial_method(setup)
     driver = trial_driver_model(setup)
@@ -163,6 +164,13 @@ def trial_metadata(
         "driver_kind": kinds.HANDS_OFF if setup.driver == HANDS_OFF else kinds.VIRTUAL,
         "record_version": kinds.RECORD_VERSION,
     }
+
+
+def _learnt_from(setup: TrialSetup, driver: object) -> Real | None:
+    """Guided driving that was learnt from [s]; None for who learns nothing."""
+    if setup.driver == HANDS_OFF or not isinstance(driver, DriverParameters):
+        return None
+    return driver.learning.before if driver.learning.share > 0.0 else None
 
 
 def scenario_metadata(setup: TrialSetup) -> dict[str, object]:

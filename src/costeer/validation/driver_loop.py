@@ -29,6 +29,7 @@ from costeer.loop.step import LoopState, drive, initial_state, move, sense
 from costeer.methods.manual import MANUAL
 from costeer.plant.road import cruising_lane
 from costeer.sensing.measurement import Measurement
+from costeer.validation.swing import SLOWEST_SWING
 
 Signal = NDArray[np.float64]
 Spectrum = NDArray[np.complex128]
@@ -49,9 +50,6 @@ STATES = (
     "reflex",
 )
 """What car, wheel, motor, eyes and arms remember about straight driving."""
-
-SLOWEST_SWING = 0.5
-"""Slower motion than this is drift, not a swing [rad/s]."""
 
 _STEP = 1e-6
 
