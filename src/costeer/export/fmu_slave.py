@@ -78,9 +78,11 @@ class Controller(Fmi3Slave):  # type: ignore[misc]  # it ships no types
                 getter=lambda: self._time,
             )
         )
-        for record in ("_measurement", "_request"):
-            for each in described(getattr(self, record)):
-                self._register_input(record, each)
+        for each in described(self._measurement):
+            self._register_input("_measurement", each)
+        for each in described(self._request):
+            if each.name != "side":  # a method hears it as that of the measurement
+                self._register_input("_request", each)
         for name, (place, meaning) in OUTPUTS.items():
             self._register(
                 Float64(

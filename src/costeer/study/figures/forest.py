@@ -179,7 +179,7 @@ def _share_scale(axes: Sequence[Axes], titles: Sequence[str]) -> None:
     for each in axes:
         each.margins(x=0.08)
         each.xaxis.set_major_locator(MaxNLocator(nbins=6, steps=[1, 2, 5, 10]))
-        each.set_xlabel("less ← g_av [–] → more")
+        each.set_xlabel(r"less ← $g_\mathrm{av}$ [–] → more")
 
 
 def _legend(panels_found: Sequence[Rows]) -> list[Line2D]:
