@@ -8,7 +8,9 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
+from costeer.devices.wheels import hands
 from costeer.devices.wheels.simulated import SimulatedWheel, SpringHands
+from costeer.loop.realtime import arms_tick
 from costeer.runtime.guard import GuardParameters
 from costeer.runtime.setup import DriveSetup
 from costeer.runtime.states import Fault, RunState
@@ -47,6 +49,24 @@ def test_hands_that_turn_the_wheel_are_felt_within_their_torque(rig: MakeRig) ->
     wanted = hands.amplitude * np.sin(2 * math.pi * (when + 0.03) / hands.period)
     true = hands.stiffness * (wanted - angle) - hands.damping * rate
     assert np.corrcoef(true, told)[0, 1] > 0.8
+
+
+def test_hands_on_a_simulated_wheel_are_compiled_before_it_is_opened(
+    rig: MakeRig, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """In the loop it would stand still for a second, and the watchdog end it."""
+    moved: list[float] = []
+
+    def tick(*given: float) -> float:
+        moved.append(given[3])
+        return arms_tick(*given)  # type: ignore[arg-type]  # arrays first
+
+    monkeypatch.setattr(hands, "arms_tick", tick)
+    drive = rig(wheel_setup())
+    assert moved
+    monkeypatch.undo()
+    drive.ask("start")
+    assert np.isfinite(of(drive.steps(3), "steering_wheel_angle")).all()
 
 
 def test_stop_fades_out_and_leaves_no_torque(rig: MakeRig) -> None:

@@ -13,6 +13,7 @@ from collections.abc import Callable
 from contextlib import suppress
 from typing import Any
 
+from costeer.devices.wheels.hands import warm_up_hands
 from costeer.devices.wheels.interface import EFFECT_LIFE, WheelLost
 from costeer.devices.wheels.registry import open_wheel
 from costeer.loop.tick import NO_VERDICT
@@ -106,6 +107,7 @@ class Driving:
     def warm_up(self) -> None:
         """Compile everything before the wheel is opened: some switch off when idle."""
         self._cabin.warm_up()
+        warm_up_hands()
 
     def open_wheel(self) -> None:
         """Open the wheel; the loop must begin at once.

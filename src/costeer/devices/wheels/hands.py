@@ -138,6 +138,11 @@ class KeyHands(_Arms):
         self._intend(seen.intended_angle, float(seen.row[_SPEED]), seen.car)
 
 
+def warm_up_hands() -> None:
+    """Compile what moves the arms of a simulated wheel, which nobody sees."""
+    KeyHands(1.0 / 960.0)(0.0, 0.0, 0.0)
+
+
 class ScriptHands(_Arms):
     """A script says when the hands intend which angle; straight lines between.
 
