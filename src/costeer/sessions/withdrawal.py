@@ -56,7 +56,7 @@ def made_apart(folder: Path) -> list[Path]:
 
 
 def _made_in(room: Path) -> list[Path]:
-    made = [*room.glob("*.csv"), *(room / "figures").glob("*.svg")]
+    made = [*room.glob("*.csv"), *(room / "figures").glob("*.*")]
     return [*made, *room.glob("report.html")]
 
 
