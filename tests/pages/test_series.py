@@ -11,7 +11,15 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
-from costeer.pages.series import HEADER, Other, page_values, say, spans, table
+from costeer.pages.series import (
+    HEADER,
+    Other,
+    name_parts,
+    page_values,
+    say,
+    spans,
+    table,
+)
 from costeer.pages.style import Margins, new_figure, panels, styled, svg_text
 
 POINTS_PER_MM = 72.0 / 25.4
@@ -114,6 +122,7 @@ def test_what_another_participant_has_not_is_not_drawn() -> None:
 def test_the_names_told_are_those_in_the_drawing() -> None:
     with styled():
         figure = drawn()
+        name_parts(figure)
         values = json.loads(page_values(figure))
         svg = svg_text(figure, "f", "F")
     assert all(f'id="{name}"' in svg for name, _, _ in values["curves"])

@@ -16,7 +16,7 @@ from markupsafe import Markup
 from costeer.base.files import write_text
 from costeer.pages.exhibit import Exhibit
 from costeer.pages.inline import inline_svg
-from costeer.pages.series import page_values, table
+from costeer.pages.series import name_parts, page_values, table
 from costeer.pages.style import COLUMN_WIDTH_MM, MM_PER_INCH, svg_text
 from costeer.pages.tables import Table, shortened
 
@@ -84,8 +84,9 @@ def picture(exhibit: Exhibit) -> Picture:
     if exhibit.figure is None:
         return Picture(exhibit, "", half=False)
     figure = exhibit.figure
-    values = page_values(figure, exhibit.others)
+    name_parts(figure)
     svg = svg_text(figure, exhibit.name, exhibit.title)
+    values = page_values(figure, exhibit.others)
     half = float(figure.get_figwidth()) * MM_PER_INCH <= COLUMN_WIDTH_MM + 1.0
     words = exhibit._replace(figure=None, others=())
     return Picture(words, svg, half, table(figure), values)

@@ -162,11 +162,17 @@ def _axis_name(figure: Figure, axes: Axes, which: str) -> str:
     return " ".join(own.replace("$K_h$", "K_h").split())
 
 
+def name_parts(figure: Figure) -> None:
+    """Name the artists of a figure in its SVG, before that is written."""
+    for place, (_, _, artist, _) in enumerate(_named(figure)):
+        artist.set_gid(f"s{place}")
+
+
 def page_values(figure: Figure, others: Sequence[Other] = ()) -> str:
-    """What the page knows of a figure as JSON; names the artists for the SVG.
+    """What the page knows of a figure as JSON.
 
     Args:
-        figure: Drawn, and not yet written.
+        figure: Written as SVG, which lays it out a last time.
         others: The same of other participants.
 
     Returns:
@@ -178,7 +184,6 @@ def page_values(figure: Figure, others: Sequence[Other] = ()) -> str:
     known: dict[str, tuple[str, Artist, Axes]] = {}
     for place, (number, axes, artist, series) in enumerate(_named(figure)):
         name = f"s{place}"
-        artist.set_gid(name)
         if series.key:
             known[series.key] = (name, artist, axes)
         if _is_curve(artist):
