@@ -92,7 +92,8 @@ def test_the_search_finds_a_page_by_its_words(site: str) -> None:
     with page_of(1280, 900) as (page, wrong):
         asked = asked_elsewhere(page, site)
         page.goto(site + "index.html")
-        page.get_by_role("textbox", name="Search").fill("pseudo-work")
+        # The page listens to keys let go, which `fill` does not send.
+        page.get_by_role("textbox", name="Search").press_sequentially("pseudo-work")
         found = page.locator(".md-search-result__link").first
         found.wait_for()
         assert "html" in (found.get_attribute("href") or "")
