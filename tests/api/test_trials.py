@@ -144,6 +144,7 @@ def test_a_study_gives_the_tables_of_the_deep_call(tmp_path: Path) -> None:
     assert tables[0].read_bytes() == tables[1].read_bytes()
 
 
+@pytest.mark.slow
 def test_a_study_takes_cars_drivers_and_predictors_as_objects(tmp_path: Path) -> None:
     def never(window: np.ndarray[Any, Any]) -> float:
         return 0.0

@@ -46,6 +46,7 @@ def test_what_is_shown_can_be_run(tmp_path: Path, capsys: Captured) -> None:
     assert read_scenario(tmp_path / "again.yaml").actors[1].name == "second"
 
 
+@pytest.mark.slow
 def test_a_preview_is_a_picture_with_text(tmp_path: Path, capsys: Captured) -> None:
     first, second = tmp_path / "a.svg", tmp_path / "b" / "b.svg"
     for file in (first, second):

@@ -21,6 +21,7 @@ def test_the_python_of_the_page_runs(capsys: pytest.CaptureFixture[str]) -> None
     assert 0.0 < float(capsys.readouterr().out) < 1.0
 
 
+@pytest.mark.slow
 def test_the_example_learns() -> None:
     example = "examples/agents/keep_lane.py"
     assert example in PAGE

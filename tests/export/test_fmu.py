@@ -127,6 +127,7 @@ def test_it_computes_what_the_method_computes(fmu: str) -> None:
     assert modes == {1.0, 2.0}
 
 
+@pytest.mark.slow
 def test_a_method_of_ones_own_is_in_the_file(tmp_path: Path) -> None:
     own = Path(__file__).parents[2] / "examples" / "methods" / "pi_keeping.py"
     fmu = str(write_fmu(tmp_path / "pi.fmu", str(own), "weak-gentle"))

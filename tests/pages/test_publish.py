@@ -70,6 +70,7 @@ def test_words_that_meet_are_not_legible() -> None:
         assert not legible(figure)
 
 
+@pytest.mark.slow
 def test_who_asks_for_too_narrow_a_figure_is_told_what_it_needs() -> None:
     with styled():
         exhibit = drawn(6, "A title of a panel")
@@ -81,6 +82,7 @@ def test_who_asks_for_too_narrow_a_figure_is_told_what_it_needs() -> None:
         assert published(drawn(6, "A title of a panel"), needed, "svg")
 
 
+@pytest.mark.slow
 def test_a_pdf_and_a_png_are_as_wide_as_asked_and_the_same_each_time() -> None:
     with styled():
         pdf, again = (published(drawn(), 88.0, "pdf") for _ in range(2))

@@ -15,6 +15,8 @@ from costeer.study.agreement import (
 )
 from costeer.study.material import StudyMaterial
 
+pytestmark = pytest.mark.slow
+
 
 def test_the_interval_of_a_difference_is_that_of_scipy() -> None:
     rng = np.random.default_rng(1)

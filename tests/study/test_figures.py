@@ -43,6 +43,8 @@ from costeer.study.figures.colours import condition_colour
 from costeer.study.material import StudyMaterial
 from costeer.study.quantities import QUANTITIES, WORKLOAD
 
+pytestmark = pytest.mark.slow
+
 UNIT = re.compile(r"\[[^\]]+\]")
 
 

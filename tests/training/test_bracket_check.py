@@ -89,6 +89,7 @@ def test_half_of_the_drives_are_manual_and_half_take_all_conditions() -> None:
     assert num_drives(10_000.0) * 8.0 >= 10_000.0
 
 
+@pytest.mark.slow
 def test_wrong_sides_and_margins_are_counted() -> None:
     # Wild enough that a window may say another thing than those begun around it.
     weights = lively_weights(8)

@@ -195,6 +195,7 @@ def test_mirrored_drives_give_the_same_table() -> None:
     assert tables[0] == tables[1]
 
 
+@pytest.mark.slow
 def test_ablations_take_signals_away_in_turn() -> None:
     def counts_signals(
         features: NDArray[np.float64], absent: tuple[str, ...]

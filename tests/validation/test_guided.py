@@ -101,6 +101,7 @@ def test_single_corrections_are_no_swing_however_large() -> None:
     assert not swinging(found).any()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("population", [USUAL, SECOND], ids=lambda p: p.name)
 @pytest.mark.parametrize(("gain", "delay"), [(4.0, 0.04), (2.0, 0.4), (1.0, 1.2)])
 def test_too_much_gain_or_delay_is_found_in_every_look(

@@ -67,6 +67,7 @@ def test_all_of_a_growing_swing_is_found_again(ratio: float) -> None:
     assert kept_after_a_period(swing(ratio, 2.0)) > 0.98
 
 
+@pytest.mark.slow
 def test_single_corrections_do_not_repeat() -> None:
     found = [kept_after_a_period(corrections(seed)) for seed in range(200)]
     # Some 20 corrections fall into line by chance now and then.

@@ -100,6 +100,7 @@ def test_an_engine_that_is_not_installed_is_a_named_line(
     assert "[jax]" in skipped[0].reason
 
 
+@pytest.mark.slow
 def test_the_compiled_car_drives_as_the_one_in_plain_python() -> None:
     here, there = drive_compiled(CarParameters(), 480), drive(CarParameters(), 480)
     # The same arithmetic; fused multiplication may differ in the last place.

@@ -71,6 +71,7 @@ def read_until_new(tracker: LslTracker, after: float) -> HeadReading:
     pytest.fail("nothing came")
 
 
+@pytest.mark.slow
 def test_samples_travel_from_an_outlet_with_their_time() -> None:
     outlet = FakeOutlet([("Head Yaw", "deg"), ("Valid", "")])
     tracker = LslTracker(HeadDescription("lsl", outlet.name, validity="Valid"))
@@ -102,6 +103,7 @@ def test_two_streams_of_one_name_are_refused() -> None:
         LslTracker(HeadDescription("lsl", one.name))
 
 
+@pytest.mark.slow
 def test_samples_that_another_clock_has_stamped_are_refused() -> None:
     outlet = FakeOutlet([("Head Yaw", "deg")])
     tracker = LslTracker(HeadDescription("lsl", outlet.name))

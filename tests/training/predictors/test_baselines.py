@@ -91,6 +91,7 @@ def test_a_few_can_be_fitted_alone() -> None:
         train_baselines(SPLIT, 1, names=("paper-gru",), parameters=TINY)
 
 
+@pytest.mark.slow
 def test_the_papers_network_joins_the_others() -> None:
     weights = random_weights(3, seed=1)
     found = with_paper_network({}, weights, {"source": "thin air"})

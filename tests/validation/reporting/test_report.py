@@ -19,6 +19,8 @@ from costeer.validation.reporting.sections import page_sections
 from costeer.validation.targets import TARGETS
 from tests.validation.reporting.made_up import SEED, bare, evidence
 
+pytestmark = pytest.mark.slow
+
 
 def written(folder: Path, **options: bool) -> str:
     prepare(folder)
