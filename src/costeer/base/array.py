@@ -18,7 +18,8 @@ import numpy as np
 from numba import types
 from numba.extending import overload, register_jitable
 
-import costeer.base.replace  # noqa: F401  teaches compiled code `_replace`
+import costeer.base.replace
+import costeer.base.whole  # noqa: F401  what compiled code does with named tuples
 
 Real: TypeAlias = float
 """A float, an array of them or a traced value: annotations show the scalar."""
