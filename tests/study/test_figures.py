@@ -44,7 +44,6 @@ from costeer.study.material import StudyMaterial
 from costeer.study.quantities import QUANTITIES, WORKLOAD
 
 pytestmark = pytest.mark.slow
-
 UNIT = re.compile(r"\[[^\]]+\]")
 
 
