@@ -157,3 +157,40 @@ def test_a_table_of_costeer_is_no_number_of_a_plug_in(
     before = source_hash((found,))
     monkeypatch.setitem(CARS, "my-own", next(iter(CARS.values())))
     assert source_hash((found,)) == before
+
+
+LAW = "def law(x):\n    return {} * x\n"
+
+
+@pytest.mark.usefixtures("_clean")
+def test_a_module_that_was_edited_and_reloaded_is_another_one(tmp_path: Path) -> None:
+    file = tmp_path / "reloaded_law.py"
+    file.write_text(LAW.format("1.0"), "utf-8")
+    sys.path.insert(0, str(tmp_path))
+    module = importlib.import_module("reloaded_law")
+    before = source_hash((module.law,))
+    file.write_text(LAW.format("22.0"), "utf-8")
+    assert source_hash((module.law,)) == before
+    importlib.reload(module)
+    after = source_hash((module.law,))
+    assert after != before
+    file.write_text(LAW.format("1.0") + "\n", "utf-8")
+    importlib.reload(module)
+    assert source_hash((module.law,)) not in {before, after}
+
+
+@pytest.mark.usefixtures("_clean")
+def test_a_function_that_an_editor_patched_in_place_is_refused(tmp_path: Path) -> None:
+    file = tmp_path / "patched_law.py"
+    file.write_text(LAW.format("1.0"), "utf-8")
+    sys.path.insert(0, str(tmp_path))
+    module = importlib.import_module("patched_law")
+    source_hash((module.law,))
+    file.write_text(LAW.format("22.0"), "utf-8")
+    names: dict[str, Any] = {}
+    exec(compile(file.read_text("utf-8"), str(file), "exec"), names)
+    module.law.__code__ = names["law"].__code__
+    with pytest.raises(ValueError, match=r"patched_law\.py was edited .*importlib\."):
+        source_hash((module.law,))
+    importlib.reload(module)
+    assert len(source_hash((module.law,))) == 16

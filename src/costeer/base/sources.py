@@ -138,7 +138,8 @@ def _imported(source: bytes) -> tuple[str, ...]:
 
 def _edited(names: Names) -> ValueError:
     return ValueError(
-        f"{names['__file__']} was edited since it was loaded; start Python again"
+        f"{names['__file__']} was edited since it was loaded; load it anew "
+        "(importlib.reload), or start Python again"
     )
 
 
