@@ -56,24 +56,25 @@ def layout_of(value: Any) -> tuple[tuple[str, str], ...]:
 
 def packed(value: Any) -> NDArray[np.float64]:
     """Return the nested named tuple as one new float64 array."""
-    array = np.empty(packed_size(value))
-    pack(array, value)
-    return array
+    return np.array(_numbers(value, []), dtype=np.float64)
 
 
 def pack(array: NDArray[np.float64], value: Any) -> None:
     """Write the nested named tuple into `array` from its start."""
-    _pack(array, 0, value)
+    numbers = _numbers(value, [])
+    array[: len(numbers)] = numbers
 
 
-def _pack(array: NDArray[np.float64], offset: int, value: Any) -> int:
+def _numbers(value: Any, found: list[float]) -> list[float]:
+    """Add all that a nested tuple holds, in its order."""
     if isinstance(value, tuple):
         for part in value:
-            offset = _pack(array, offset, part)
-        return offset
-    size = int(np.size(value))
-    array[offset : offset + size] = np.ravel(value)
-    return offset + size
+            _numbers(part, found)
+    elif isinstance(value, (float, int)):
+        found.append(value)
+    else:
+        found.extend(np.ravel(value).tolist())
+    return found
 
 
 def unpack(like: Tuple, array: NDArray[np.float64]) -> Tuple:

@@ -245,6 +245,17 @@ def _place_in_file(code: CodeType) -> bytes:
 
 def _text(function: FunctionType) -> bytes:
     """A function as it was written, or what it does."""
+    ours = Path(function.__code__.co_filename).is_relative_to(_PACKAGE)
+    return _text_of_ours(function) if ours else _written(function)
+
+
+@lru_cache(maxsize=256)
+def _text_of_ours(function: FunctionType) -> bytes:
+    """What does not change while Python runs."""
+    return _written(function)
+
+
+def _written(function: FunctionType) -> bytes:
     try:
         return inspect.getsource(function).encode()
     except (OSError, TypeError):

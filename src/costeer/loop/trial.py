@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from costeer.base.array import Real
-from costeer.base.described import described
+from costeer.base.described import value_at
 from costeer.drivers.driver import DriverParameters
 from costeer.drivers.interface import AnyDriver, DriverModel, driver_sources
 from costeer.drivers.population import POPULATIONS, USUAL, VIRTUAL
@@ -137,7 +137,7 @@ def trial_metadata(
     condition, method = trial_condition(setup), trial_method(setup)
     driver = trial_driver_model(setup)
     return {
-        "version": distribution.version("costeer"),
+        "version": _version("costeer"),
         "seed": setup.seed,
         "participant": setup.participant,
         "condition": setup.condition,
@@ -192,13 +192,24 @@ def _driver_text(setup: TrialSetup, driver: AnyDriver) -> str:
 
 def _thresholds(parameters: LoopParameters[Any]) -> dict[str, object]:
     """What a reader looks for first; null where the method has no such thing."""
-    known = {each.name: each.value for each in described(parameters)}
     places = {
         "inconsistency_threshold": "controller.consistency.inconsistency_threshold",
         "replan_gain": "controller.replanning.replan_gain",
         "torque_limit": "controller.actuation.torque_limit",
     }
-    return {name: known.get(place) for name, place in places.items()}
+    return {name: _number_at(parameters, place) for name, place in places.items()}
+
+
+def _number_at(parameters: LoopParameters[Any], place: str) -> Real | None:
+    """The number at a dotted place, if there is one."""
+    try:
+        value = value_at(parameters, place)
+    except AttributeError:
+        return None
+    return value if isinstance(value, (bool, int, float)) else None
+
+
+_version = cache(distribution.version)
 
 
 @cache
