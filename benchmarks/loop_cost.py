@@ -199,7 +199,7 @@ def measured(rounds: int) -> Around:
     """What loop and surroundings take, the lowest of some rounds."""
     setup = SETUP
     parameters, method = loop_parameters(setup), trial_method(setup)
-    steps = round(2.0 * setup.length / setup.speed / DT)
+    steps = round(setup.length / (trial.LIKELY_SHARE * setup.speed) / DT)
     script = Script(INTENTION_SCRIPTED, PREDICTION_HORIZON, np.empty(0))
     seeds = setup.seed, setup.participant, setup.condition
     noise = driver_noise(*seeds, steps)

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 
 from costeer.drivers.interface import NORMAL_DRAWS, DriverNoise
+from costeer.loop import trial
 from costeer.loop.noise import driver_noise
+from costeer.loop.scenario import TrialSetup
 
 NOISE = driver_noise(1, 2, "manual", 20_000)
 
@@ -42,3 +46,25 @@ def test_fields_named_uniform_are_those_after_the_normal_ones() -> None:
 def test_components_are_not_correlated() -> None:
     correlation = np.corrcoef(NOISE.T) - np.eye(NOISE.shape[1])
     assert np.abs(correlation).max() < 4.5 / np.sqrt(len(NOISE))
+
+
+def test_a_trial_that_outlasts_its_numbers_is_the_one_of_more_numbers(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    setup = TrialSetup(condition="strong-normal", intention="network", length=500.0)
+    drawn: list[int] = []
+
+    def noted(seed: int, participant: int, condition: str, num_steps: int) -> Any:
+        drawn.append(num_steps)
+        return driver_noise(seed, participant, condition, num_steps)
+
+    monkeypatch.setattr(trial, "driver_noise", noted)
+    usual = trial.simulate_trial(setup)
+    assert len(drawn) == 1
+    assert drawn[0] < 1.2 * len(usual.columns["time"])
+    monkeypatch.setattr(trial, "LIKELY_SHARE", 2.0)
+    late = trial.simulate_trial(setup)
+    assert drawn[1] < len(late.columns["time"]) < drawn[2]
+    for name, values in usual.columns.items():
+        np.testing.assert_array_equal(values, late.columns[name], name)
+    assert usual.metadata == late.metadata

@@ -50,7 +50,11 @@ from costeer.scenarios.reading import scenario_named
 from costeer.scenarios.world import sizes_of
 
 SLOWEST_SHARE = 0.5
-"""A trial ends at the latest when a car at this share of its speed would arrive."""
+"""A trial ends at the latest when a car at this share of its speed would arrive [-]."""
+
+LIKELY_SHARE = 0.9
+"""Hardly anybody on a road without other cars is slower than this share of the speed
+[-]. Decides what a trial costs, and nothing else."""
 
 
 def simulate_trial(setup: TrialSetup, engine: str = "numba") -> TrialRecord:
@@ -70,31 +74,8 @@ def simulate_trial(setup: TrialSetup, engine: str = "numba") -> TrialRecord:
         ModuleNotFoundError: If the engine is not installed.
     """
     parameters, predictor = loop_parameters(setup), trial_predictor(setup)
-    longest = setup.length / (SLOWEST_SHARE * setup.speed)
-    noise = driver_noise(
-        setup.seed, setup.participant, setup.condition, int(np.ceil(longest / DT))
-    )
-    script = Script(
-        intention=INTENTIONS[setup.intention],
-        horizon=setup.prediction_horizon,
-        trigger_times=np.array(sorted(setup.trigger_times), dtype=np.float64),
-    )
     method = trial_method(setup)
-    network = trial_network(setup, parameters, predictor)
-    driver = trial_driver_model(setup)
-    if predictor is not None and predictor.judge is not None and engine != "jax":
-        advance = begun(method, parameters, network, engine, driver=driver)
-        judge, name = predictor.judge, predictor.name
-        rows = outside_rollout(
-            advance,
-            script,
-            Outlook(lambda: Verdicts(judge, name).after, parameters.road),
-            noise,
-            parameters.road,
-            row_width(method, parameters),
-        )
-    else:
-        rows = rollout(method, parameters, script, network, noise, engine, driver)
+    rows = _driven(setup, parameters, predictor, engine)
     _refuse_broken(setup, rows)
     added = (*method.columns, *car_columns(num_cars(parameters.fleet)))
     columns = record_columns(rows, is_assisted(setup), with_method_columns(added))
@@ -102,6 +83,55 @@ def simulate_trial(setup: TrialSetup, engine: str = "numba") -> TrialRecord:
     about["torque_faults"] = int(np.count_nonzero(columns["torque_fault"]))
     about["outcome"] = outcome_of(rows, setup.length)
     return TrialRecord(about, columns, added)
+
+
+def _driven(
+    setup: TrialSetup,
+    parameters: LoopParameters[Any],
+    predictor: ChosenPredictor | None,
+    engine: str,
+) -> NDArray[np.float64]:
+    """Rows of a trial, run with random numbers for no longer than it is likely to last.
+
+    More random numbers begin with the same ones: where they ran out, the trial is run
+    again with all that it may need.
+    """
+    alone = not num_cars(parameters.fleet) and engine != "jax"
+    for share in (LIKELY_SHARE, SLOWEST_SHARE) if alone else (SLOWEST_SHARE,):
+        steps = int(np.ceil(setup.length / (share * setup.speed) / DT))
+        noise = driver_noise(setup.seed, setup.participant, setup.condition, steps)
+        rows = _run(setup, parameters, predictor, noise, engine)
+        if len(rows) < steps:
+            break
+    return rows
+
+
+def _run(
+    setup: TrialSetup,
+    parameters: LoopParameters[Any],
+    predictor: ChosenPredictor | None,
+    noise: NDArray[np.float64],
+    engine: str,
+) -> NDArray[np.float64]:
+    """Rows of a trial, until it ends or its random numbers do."""
+    script = Script(
+        intention=INTENTIONS[setup.intention],
+        horizon=setup.prediction_horizon,
+        trigger_times=np.array(sorted(setup.trigger_times), dtype=np.float64),
+    )
+    method, driver = trial_method(setup), trial_driver_model(setup)
+    network = trial_network(setup, parameters, predictor)
+    if predictor is None or predictor.judge is None or engine == "jax":
+        return rollout(method, parameters, script, network, noise, engine, driver)
+    judge, name = predictor.judge, predictor.name
+    return outside_rollout(
+        begun(method, parameters, network, engine, driver=driver),
+        script,
+        Outlook(lambda: Verdicts(judge, name).after, parameters.road),
+        noise,
+        parameters.road,
+        row_width(method, parameters),
+    )
 
 
 def _refuse_broken(setup: TrialSetup, rows: NDArray[np.float64]) -> None:
