@@ -143,7 +143,7 @@ def _sha256(path: Path) -> str:
         return hashlib.file_digest(file, "sha256").hexdigest()
 
 
-_SCRIPT = '''"""Make tables, tests, figures and report of this study again from its records."""
+_SCRIPT = '''"""Make tables, tests, figures and report again from the records."""
 
 import sys
 from pathlib import Path
