@@ -90,7 +90,6 @@ def test_the_script_makes_what_the_manifest_promises(shared: Path) -> None:
         check=True,
         capture_output=True,
         env={**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)},
-        timeout=240,
     )
     assert [name for name in promised if not (shared / name).is_file()] == []
     for name in ("trials.csv", "lane_changes.csv"):
