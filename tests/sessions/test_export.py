@@ -156,9 +156,9 @@ def test_all_formats_come_into_folders_of_their_own(
     folder, out = tmp_path / "s", tmp_path / "out"
     made_up_session(folder, ["P01"], ["manual", "weak-gentle"]).close()
     given = ["session", "export", str(folder), "--format", "all", "--out", str(out)]
+    assert main(given) == 0
     names = {"csv", "bids", "matlab", "mcap", "autoui"}
     assert {each.name for each in out.iterdir()} == names
-    assert {each.name for each in out.iterdir()} == {"csv", "bids", "matlab", "mcap"}
     assert {each.name for each in (out / "mcap").iterdir()} == {
         "P01-manual.mcap",
         "P01-weak-gentle.mcap",
