@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 import tomllib
 from pathlib import Path
@@ -47,6 +48,21 @@ def test_the_citation_is_of_this_version() -> None:
     assert citation["version"] == project["version"]
     assert citation["license"] == project["license"]
     assert citation["keywords"] == project["keywords"]
+
+
+def test_the_changelog_has_this_version_below_what_is_unreleased() -> None:
+    changelog = (ROOT / "CHANGELOG.md").read_text("utf-8")
+    heads = re.findall(r"^## (.*)$", changelog, re.MULTILINE)
+    released = parsed(ROOT / "CITATION.cff")["date-released"]
+    assert heads[0] == "[Unreleased]"
+    assert heads[1] == f"[{settings()['project']['version']}] - {released}"
+
+
+def test_the_version_is_written_down_nowhere_else() -> None:
+    number = re.escape(settings()["project"]["version"])
+    sources = (ROOT / "src").rglob("*.py")
+    written = re.compile(rf"""["']{number}["']""")
+    assert [f.name for f in sources if written.search(f.read_text("utf-8"))] == []
 
 
 def test_the_citation_leads_to_the_paper() -> None:
@@ -110,5 +126,16 @@ def test_a_source_distribution_has_all_that_is_needed_to_check_it() -> None:
     included = settings()["tool"]["hatch"]["build"]["targets"]["sdist"]["include"]
     folders = {"src", "tests", "examples", "benchmarks", "docs", "requirements"}
     assert folders <= set(included)
-    assert {"Makefile", "CITATION.cff", "LICENSE"} <= set(included)
+    assert {"Makefile", "CITATION.cff", "LICENSE", ".ci", ".github"} <= set(included)
     assert [name for name in included if not (ROOT / name).exists()] == []
+
+
+def test_a_container_for_development_is_set_up_by_files_that_exist() -> None:
+    folder = ROOT / ".devcontainer"
+    content = json.loads((folder / "devcontainer.json").read_text("utf-8"))
+    assert (folder / content["build"]["dockerfile"]).is_file()
+    _, script, lock = content["postCreateCommand"].split()
+    assert (ROOT / script).is_file()
+    assert (ROOT / "requirements" / f"{lock}.lock").is_file()
+    (image,) = re.findall(r"^FROM (\S+)", (folder / "Dockerfile").read_text(), re.M)
+    assert f"FROM {image}\n" in (ROOT / "Dockerfile").read_text("utf-8")

@@ -19,6 +19,7 @@ from costeer.records.columns import COLUMNS
 from costeer.records.record import read_record
 from costeer.sessions.export import export_session
 from costeer.sessions.session import Session
+from costeer.study.plain_folder import people_of_records
 from tests.sessions.made_up import made_up_session
 
 pytestmark = pytest.mark.slow
@@ -156,7 +157,8 @@ def test_all_formats_come_into_folders_of_their_own(
     made_up_session(folder, ["P01"], ["manual", "weak-gentle"]).close()
     given = ["session", "export", str(folder), "--format", "all", "--out", str(out)]
     assert main(given) == 0
-    assert {each.name for each in out.iterdir()} == {"csv", "bids", "matlab", "mcap"}
+    names = {"csv", "bids", "matlab", "mcap", "autoui"}
+    assert {each.name for each in out.iterdir()} == names
     assert {each.name for each in (out / "mcap").iterdir()} == {
         "P01-manual.mcap",
         "P01-weak-gentle.mcap",
@@ -221,3 +223,16 @@ def test_the_trace_of_the_wheel_goes_along(tmp_path: Path) -> None:
     assert kept.read_bytes() == b"trace"
     attempts = tmp_path / "out/derivatives/costeer/attempts.csv"
     assert "records/P01-drive-manual.wheel.parquet" in attempts.read_text("utf-8")
+
+
+def test_an_artifact_has_the_trials_that_count_and_a_report_can_be_made_of_them(
+    studied: Path, tmp_path: Path
+) -> None:
+    export_session(studied, "autoui", tmp_path / "out")
+    drives = people_of_records(tmp_path / "out").drives
+    assert len(drives) == NUM_TRIALS
+    assert {each.participant for each in drives} <= {"P01", "P02", "P03", "P04"}
+    told = (tmp_path / "out" / "autoui-repro.yml").read_text("utf-8")
+    assert all(f"records/{each.record.name}" in told for each in drives)
+    published = {each.name for each in (tmp_path / "out" / "published").iterdir()}
+    assert {"trials.csv", "questionnaires.csv", "exclusions.csv"} <= published

@@ -153,3 +153,13 @@ def test_a_table_whose_rows_belong_together_does_not_sort(page: Page) -> None:
     names = column(page, "effects", 1)
     assert "" in names
     assert page.locator("#table-effects thead button").count() == 0
+
+
+def test_the_heads_of_tables_are_text_where_the_page_is_printed(page: Page) -> None:
+    # Chromium repeats a head on every sheet, but no button that is in it.
+    page.emulate_media(media="print")
+    shown = page.eval_on_selector_all(
+        "thead button", "all => all.map(one => getComputedStyle(one).display)"
+    )
+    assert shown
+    assert set(shown) == {"contents"}

@@ -1,4 +1,4 @@
-"""`costeer export`: a trial record in the format of other programs."""
+"""`costeer export`: a record for other programs, a study for other people."""
 
 from __future__ import annotations
 
@@ -19,21 +19,31 @@ FORMATS = {"mcap": ".mcap", "parquet": ".parquet"}
 def export(
     file: Annotated[
         Path,
-        typer.Argument(help="Trial record, table, or stream of an interrupted drive."),
+        typer.Argument(
+            help="Trial record, table, stream of an interrupted drive, or a study."
+        ),
     ],
-    out: Annotated[Path, typer.Option(help="File to write.")],
-    to: Annotated[str, typer.Option(help="Format to write: mcap or parquet.")] = "mcap",
+    out: Annotated[Path, typer.Option(help="File to write; for a study, a folder.")],
+    to: Annotated[
+        str, typer.Option(help="Format to write: mcap, parquet, or autoui for a study.")
+    ] = "mcap",
 ) -> None:
-    """Write a trial record in the format of other programs.
+    """Write a trial record for other programs, or a study for other people.
 
     MCAP with Protobuf messages opens in Foxglove, PlotJuggler and rerun. Parquet turns
     the stream of an interrupted drive into a trial record, and a stream whose name ends
-    in .wheel.arrow into the table of the wheel.
+    in .wheel.arrow into the table of the wheel. With autoui the folder of a study, or
+    of drive records, becomes one with records, tables and a script that makes the
+    report again, described in autoui-repro.yml.
 
     Example:
         costeer export out/trial.parquet --to mcap --out out/trial.mcap
         costeer export out/drive.arrow --to parquet --out out/saved.parquet
+        costeer export out/study --to autoui --out shared
     """
+    if to == "autoui":
+        _share(file, out)
+        return
     _check_target(file, out, to)
     if file.name.endswith(".wheel.arrow"):
         _save_trace(file, out, to)
@@ -47,6 +57,34 @@ def export(
         _write(record, out, to)
     except ValueError as error:
         raise ValueError(f"{file}: {error}") from error
+    typer.echo(out)
+
+
+def _share(folder: Path, out: Path) -> None:
+    """Write a study as an artifact that others can run.
+
+    Raises:
+        ValueError: If it is no folder of a study, or `out` is not empty.
+        OSError: If a file cannot be read or written.
+    """
+    from importlib.metadata import version
+
+    from costeer.base.files import prepare_folder
+    from costeer.export.autoui import artifact_of_folder, write_artifact
+    from costeer.sessions.store import STORE_FILE
+
+    if (folder / STORE_FILE).is_file():
+        raise ValueError(
+            f"{folder} is a session; run: costeer session export {folder} "
+            f"--format autoui --out {out}"
+        )
+    if out.is_dir() and any(out.iterdir()):
+        raise ValueError(f"--out is {out}, which is not empty; give a new folder")
+    if folder.resolve() in (out.resolve(), *out.resolve().parents):
+        raise ValueError(f"--out is {out}, within the study; give a folder outside")
+    artifact = artifact_of_folder(folder, version("costeer"))
+    prepare_folder(out, ".export", "export")
+    write_artifact(artifact, out)
     typer.echo(out)
 
 

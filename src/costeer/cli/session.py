@@ -62,7 +62,8 @@ def session(
     to: Annotated[
         str,
         typer.Option(
-            "--format", help="With export: format, one of csv, bids, matlab, mcap, all."
+            "--format",
+            help="With export: format, csv, bids, matlab, mcap, autoui or all.",
         ),
     ] = "csv",
     out: Annotated[

@@ -30,6 +30,22 @@ class Nothing(NamedTuple):
     steps: Real = 0.0
 
 
+@compiled
+def begin(parameters: object, place: Real) -> Nothing:
+    """Either of them begins, wherever the car is."""
+    return Nothing()
+
+
+@compiled
+def after(state: Nothing) -> Nothing:
+    """What either remembers after a step."""
+    return Nothing(state.steps + 1.0)
+
+
+SOURCE = "costeer, environment/seats.py"
+"""Of either, as records tell it."""
+
+
 class GivenTorque(NamedTuple):
     """What the guidance is to do.
 
@@ -41,12 +57,6 @@ class GivenTorque(NamedTuple):
 
 
 @compiled
-def keep_nothing(parameters: GivenTorque, lane: Real) -> Nothing:
-    """The guidance begins."""
-    return Nothing()
-
-
-@compiled
 def give_torque(
     parameters: GivenTorque,
     state: Nothing,
@@ -55,15 +65,15 @@ def give_torque(
     dt: Real,
 ) -> tuple[Nothing, Assistance]:
     """Ask for the torque that was given."""
-    return Nothing(state.steps + 1.0), Assistance(applied_torque=parameters.torque)
+    return after(state), Assistance(applied_torque=parameters.torque)
 
 
 GUIDANCE = Method(
     name="agent",
     version="1",
-    source="costeer, environment/seats.py",
+    source=SOURCE,
     parameters=lambda condition, car, column, road: GivenTorque(),
-    initial_state=keep_nothing,
+    initial_state=begin,
     step=give_torque,
 )
 """Guidance whose torque comes from outside."""
@@ -86,12 +96,6 @@ class GivenHands(NamedTuple):
 
 
 @compiled
-def sit_down(parameters: GivenHands, lane_centre: Real) -> Nothing:
-    """The driver begins."""
-    return Nothing()
-
-
-@compiled
 def act(
     parameters: GivenHands,
     state: Nothing,
@@ -103,15 +107,15 @@ def act(
     """Do what was given; nobody knows what such a driver intends."""
     pedals = Pedals(accelerator=parameters.accelerator, brake=parameters.brake)
     hands = ArmCommand(torque=parameters.torque)
-    return Nothing(state.steps + 1.0), Action(arm=hands, pedals=pedals)
+    return after(state), Action(arm=hands, pedals=pedals)
 
 
 DRIVER = DriverModel(
     name="agent",
     version="1",
-    source="costeer, environment/seats.py",
+    source=SOURCE,
     parameters=lambda draw: GivenHands(),
-    initial_state=sit_down,
+    initial_state=begin,
     act=act,
 )
 """Driver whose hands and feet are moved from outside."""

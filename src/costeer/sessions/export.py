@@ -1,4 +1,4 @@
-"""A study with people for other programs: CSV, BIDS, MATLAB, MCAP."""
+"""A study with people for other programs: CSV, BIDS, MATLAB, MCAP, an artifact."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from costeer.sessions.session import Session
 from costeer.sessions.tables import participant_rows, write_all
 from costeer.study.people import Drive, People
 
-FORMATS = ("csv", "bids", "matlab", "mcap", "all")
+FORMATS = ("csv", "bids", "matlab", "mcap", "autoui", "all")
 
 
 def export_session(folder: Path, to: str, out: Path) -> People:
@@ -133,6 +133,27 @@ def _bids(folder: Path, out: Path) -> People:
     return people
 
 
+def _autoui(folder: Path, out: Path) -> People:
+    from costeer.export.autoui import Artifact, write_artifact
+
+    session = Session(folder)
+    try:
+        people = people_in(session, answers_in(session))
+        title = session.plan.title
+    finally:
+        session.close()
+    with tempfile.TemporaryDirectory() as room:
+        write_all(folder, Path(room))
+        artifact = Artifact(
+            title=title,
+            version=version("costeer"),
+            records={f"{_stem(d)}.parquet": d.record for d in people.drives},
+            tables=sorted(Path(room).glob("*.csv")),
+        )
+        write_artifact(artifact, out)
+    return people
+
+
 def _kept(record: Path) -> tuple[Path, ...]:
     """The record and, if there is one, the trace of the wheel."""
     trace = record.with_suffix(".wheel.parquet")
@@ -182,4 +203,5 @@ _WRITERS: dict[str, Callable[[Path, Path], People]] = {
     "bids": _bids,
     "matlab": _matlab,
     "mcap": _mcap,
+    "autoui": _autoui,
 }
