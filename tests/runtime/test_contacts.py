@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 
 from costeer.devices.wheels.simulated import SpringHands
-from costeer.loop.scenario import TrialSetup
 from costeer.runtime.guard import GuardParameters
 from costeer.runtime.indicator import Indicator
 from costeer.runtime.markers import Marker, told
@@ -116,13 +115,11 @@ def test_rumble_strip_is_felt_at_a_real_wheel_and_is_no_fault(rig: MakeRig) -> N
     assert np.ptp(torque) > 0.8  # of 1.2 N·m
 
 
-def test_drive_ends_where_the_road_of_its_scenario_does() -> None:
-    assert drive_parameters(on(BLOCKED)).road.length == 900.0
-    chosen = on(BLOCKED)
-    chosen = chosen._replace(trial=chosen.trial._replace(length=300.0))
-    assert drive_parameters(chosen).road.length == 300.0
-    usual = DriveSetup(trial=TrialSetup())
-    assert drive_parameters(usual).road.length == 8000.0
+@pytest.mark.parametrize("length", [300.0, 8000.0])
+def test_drive_ends_at_the_length_of_its_trial(length: float) -> None:
+    # 8000 m is the usual length, and yet it is a number as any other.
+    asked = on(BLOCKED)._replace(trial=on(BLOCKED).trial._replace(length=length))
+    assert drive_parameters(asked).road.length == length
 
 
 def test_indicator_goes_out_after_the_lane_change_and_not_before() -> None:

@@ -7,13 +7,11 @@ from pathlib import Path
 import pytest
 
 from costeer.cli import main
-from costeer.sessions.plan import session_steps
-from costeer.sessions.plan_file import (
-    check_words,
-    paper_plan_text,
-    parsed_plan,
-    read_plan,
-)
+from costeer.runtime.setup import DriveSetup, drive_parameters
+from costeer.sessions.plan import session_steps, trial_of
+from costeer.sessions.plan_file import paper_plan_text, parsed_plan, read_plan
+from costeer.sessions.plan_words import check_words
+from costeer.sessions.scenarios import scenario_beside, scenario_notes
 from costeer.sessions.session import Session
 
 HEAD = "title: a\nsteps:\n  - {kind: instruct, text: welcome}\n"
@@ -31,8 +29,15 @@ HEAD = "title: a\nsteps:\n  - {kind: instruct, text: welcome}\n"
         (
             "{kind: practise, condition: manual, minutes: 1, longest_minutes: 2, "
             "sdlp_below: -1}",
-            "sdlp_below is -1 m",
+            "sdlp_below is -1 m; give 0.05 to 2,",
         ),
+        (  # centimetres: everybody would pass
+            "{kind: practise, condition: manual, minutes: 1, longest_minutes: 2, "
+            "sdlp_below: 40}",
+            "sdlp_below is 40 m; give 0.05 to 2,",
+        ),
+        ("{kind: drive}", "names no condition; give one of manual, strong-rapid,"),
+        ("{kind: consent}", "names no instrument, as instrument: consent"),
         ("{kind: drive, condition: Manual}", "did you mean manual"),
         (
             "{kind: trials, conditions: [weak-rapid], break_every: 1, minutes: -3}",
@@ -186,6 +191,28 @@ def test_scenario_gives_length_and_speed_unless_the_plan_does(tmp_path: Path) ->
     assert driven(more) == (500.0, pytest.approx(60.0 / 3.6), "mine")
 
 
+@pytest.mark.parametrize(("length", "driven"), [("", 12_000), ("length: 8000\n", 8000)])
+def test_a_length_is_a_length_and_none_is_that_of_the_road(
+    tmp_path: Path, length: str, driven: float
+) -> None:
+    (tmp_path / "long.yaml").write_text(MINE.replace("900", "12000"))
+    file = tmp_path / "plan.yaml"
+    step = "steps: [{kind: drive, condition: manual}]\n"
+    file.write_text(f"title: a\nscenario: long.yaml\n{length}{step}")
+    plan = read_plan(file)
+    scenario = scenario_beside("long.yaml", tmp_path)
+    trial = trial_of(plan, session_steps(plan, 1)[0], 1, scenario)
+    assert drive_parameters(DriveSetup(trial)).road.length == driven
+
+
+def test_a_length_beyond_the_road_is_told(tmp_path: Path) -> None:
+    drive = "{kind: drive, condition: manual, scenario: obstacle}"
+    plan = parsed_plan(f"title: a\nlength: 1501\nsteps: [{drive}]")
+    told = scenario_notes(plan, tmp_path)
+    assert any("longer than the 1500 m of scenario obstacle" in each for each in told)
+    assert scenario_notes(plan._replace(length=1500.0), tmp_path) == []
+
+
 def test_who_has_begun_keeps_the_scenario_they_began_with(tmp_path: Path) -> None:
     (tmp_path / "mine.yaml").write_text(MINE)
     (tmp_path / "plan.yaml").write_text(
@@ -237,6 +264,8 @@ def test_a_head_that_cannot_be_is_refused_with_the_file(head: str, said: str) ->
     [
         (("instrument: nasa-tlx}", "instrument: tlx}"), "no instrument 'tlx'"),
         (("language: en", "language: xx"), "no language 'xx'"),
+        (("text: welcome", "text: welcom"), "'welcom' is no page (did you mean welco"),
+        (("text: welcome", "text: our_welcome"), "our_welcome_text under pages in te"),
     ],
 )
 def test_words_that_are_not_there_are_refused_before_anybody_begins(
@@ -270,8 +299,42 @@ def test_the_words_of_a_study_count_as_words(tmp_path: Path) -> None:
 
 def test_a_plan_in_another_encoding_is_refused_by_its_name(tmp_path: Path) -> None:
     (tmp_path / "plan.yaml").write_bytes("title: Fahrt übers Land".encode("latin-1"))
-    with pytest.raises(ValueError, match=r"plan\.yaml is not YAML"):
+    with pytest.raises(ValueError, match=r"plan\.yaml, line 1: .* save it as UTF-8"):
         Session(tmp_path)
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        (b"title: a\nlength: 1e4\n", "line 2: length is '1e4'.* without an exponent"),
+        (b"title: a\nsteps:\n", "line 2: steps has no value; give a list"),
+        (b"title: a\nsteps:\n\t- {}\n", "line 3: a tab indents this line"),
+        (b"title: \0a\n", "line 1: a control character stands there"),
+        ("title: \u904b\u8ee2\n".encode("shift_jis"), "line 1: .* save it as UTF-8"),
+        ("title: a\n".encode("utf-16"), "line 1: .* save it as UTF-8"),
+        (b"title: " + b"[" * 3000, "nested deeper than any plan"),
+    ],
+)
+def test_a_text_that_is_no_plan_is_refused_with_its_line_in_plain_words(
+    text: bytes, said: str
+) -> None:
+    with pytest.raises(ValueError, match=f"^mine.yaml.*{said}"):
+        parsed_plan(text, "mine.yaml")
+
+
+def test_words_that_yaml_takes_for_false_are_read_as_they_stand() -> None:
+    plan = parsed_plan(f"intention: off\nlanguage: no\n{HEAD}")
+    assert (plan.intention, plan.language) == ("off", "no")
+
+
+def test_a_plan_of_several_megabytes_is_refused_at_once(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    plan = tmp_path / "mine.yaml"
+    plan.write_text(f"{HEAD}about: {'x' * 1_000_000}\n")
+    given = ["session", "new", str(tmp_path / "study"), "--plan", str(plan)]
+    assert main(given) == 2
+    assert "at most 0.2 MB are read" in capsys.readouterr().err
 
 
 def test_blanks_of_the_consent_are_told_until_they_are_filled(

@@ -162,19 +162,15 @@ def _new(folder: Path, plan: Path | None) -> None:
     from costeer.base.files import read_whole, write_text
     from costeer.sessions.balance import balance
     from costeer.sessions.plan import PLAN_FILE
-    from costeer.sessions.plan_file import (
-        blank_notes,
-        check_words,
-        paper_plan_text,
-        parsed_plan,
-    )
+    from costeer.sessions.plan_file import LARGEST, paper_plan_text, parsed_plan
+    from costeer.sessions.plan_words import blank_notes, check_words
     from costeer.sessions.scenarios import (
         is_file_name,
         scenario_notes,
         scenario_texts,
     )
 
-    text = paper_plan_text().encode() if plan is None else read_whole(plan)
+    text = paper_plan_text().encode() if plan is None else read_whole(plan, LARGEST)
     found = parsed_plan(text, str(plan or PLAN_FILE))
     check_words(found, folder)
     target = folder / PLAN_FILE
@@ -210,7 +206,7 @@ class _Lab(NamedTuple):
 
 def _run(folder: Path, lab: _Lab, where: tuple[str, int], browser: bool) -> None:
     """Serve both pages until Ctrl-C."""
-    from costeer.sessions.plan_file import blank_notes, check_words
+    from costeer.sessions.plan_words import blank_notes, check_words
     from costeer.sessions.scenarios import scenario_notes
     from costeer.sessions.session import Session
     from costeer.study.locks import locked

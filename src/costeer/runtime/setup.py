@@ -24,7 +24,6 @@ from costeer.plant.fleet import num_cars
 from costeer.records.cars import car_columns
 from costeer.records.columns import Column
 from costeer.runtime.frame import MOST_METHOD_COLUMNS
-from costeer.scenarios.reading import scenario_named
 
 PLANT_STEPS = 16
 """Plant steps in a control step with a person: 960 Hz."""
@@ -116,22 +115,8 @@ def drive_parameters(setup: DriveSetup) -> LoopParameters[Any]:
         setup.trial._replace(
             plant_steps=PLANT_STEPS,
             driver=DriverParameters(),
-            length=course_length(setup.trial),
         )
     )
-
-
-def course_length(trial: TrialSetup) -> float:
-    """Where a drive ends [m]: at the end of the scenario's road.
-
-    A length that was chosen for the trial itself counts instead.
-
-    Raises:
-        ValueError: If the scenario is not known.
-    """
-    if trial.length != TrialSetup._field_defaults["length"]:
-        return float(trial.length)
-    return scenario_named(trial.scenario).road.length
 
 
 def offered_methods(setup: DriveSetup) -> dict[str, str]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
+from itertools import count
 from pathlib import Path
 from typing import Any
 
@@ -54,12 +55,15 @@ class Attempts:
             "WHERE participant = ? AND step = ?",
             *(participant, step.id),
         )
-        attempt = int(rows[0]["n"]) + 1
         room = "records" if step.kind == "drive" else "practice"
-        suffix = f"-{attempt}" if attempt > 1 else ""
         folder = self._session.folder / room
         folder.mkdir(exist_ok=True)
-        return attempt, folder / f"{participant}-{step.id}{suffix}.parquet"
+        for attempt in count(int(rows[0]["n"]) + 1):
+            suffix = f"-{attempt}" if attempt > 1 else ""
+            record = folder / f"{participant}-{step.id}{suffix}.parquet"
+            if not record.exists():  # one of another computer is not written over
+                break
+        return attempt, record
 
     def start(
         self, participant: str, step: str, facts: Mapping[str, Any]

@@ -81,10 +81,10 @@ class Plan(NamedTuple):
         participants: How many are planned.
         seed: Of leaders and of random orders.
         method: Guidance of the assisted trials.
-        length: Of the course [m]; the scenario's if NaN.
+        length: Of the course [m]; that of the scenario's road if NaN.
         speed_kmh: At the start, and suggested [km/h]; the scenario's if NaN.
         scenario: Of drives that name none, a name or a file beside the plan.
-        car: Name of the car, or a file.
+        car: Name of the car.
         intention: What starts a lane change: network, indicator or off.
         parameters: Dotted names and values; `costeer parameters` lists them.
         self_paced: Whether participants start their drives themselves.

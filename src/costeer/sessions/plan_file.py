@@ -17,6 +17,7 @@ from costeer.methods.conditions import CONDITION_NAMES
 from costeer.methods.conditions import condition as condition_named
 from costeer.runtime.setup import INTENTION_SOURCES
 from costeer.scenarios.reading import chosen
+from costeer.scenarios.unreadable import in_words
 from costeer.sessions.plan import (
     KINDS,
     ORDERS,
@@ -28,8 +29,6 @@ from costeer.sessions.plan import (
     session_steps,
     trial_of,
 )
-from costeer.sessions.questionnaires.instrument import load_instrument, unfilled
-from costeer.sessions.questionnaires.texts import load_texts
 from costeer.sessions.scenarios import scenario_beside
 from costeer.study.design import MOST_CONDITIONS
 
@@ -53,6 +52,15 @@ _OWN = {
 LABEL = re.compile(r"[a-z0-9][a-z0-9-]{0,19}")
 """What tells drives of a condition apart; it stands in names of files."""
 
+_READ_AS_FALSE = {"intention": "off", "language": "no"}
+"""Words that YAML takes for "false" where they stand without quotes."""
+
+LARGEST = 200_000
+"""Of a plan [bytes]."""
+
+_SDLP = (0.05, 2.0)
+"""Smallest and largest criterion of a practice [m]: nobody fails or passes beyond."""
+
 LONGEST_MINUTES = 120.0
 """Of a practice or a break."""
 
@@ -69,7 +77,7 @@ def read_plan(path: Path) -> Plan:
         ValueError: If it cannot be; with the line.
         OSError: If it cannot be read.
     """
-    return parsed_plan(read_whole(path), str(path))
+    return parsed_plan(read_whole(path, LARGEST), str(path))
 
 
 def parsed_plan(text: bytes | str, name: str = PLAN_FILE) -> Plan:
@@ -83,8 +91,7 @@ def parsed_plan(text: bytes | str, name: str = PLAN_FILE) -> Plan:
         ValueError: If it cannot be.
         OSError: If a scenario cannot be read.
     """
-    given = parsed_mapping(text, name)
-    plan = filled(Plan, given, name)
+    given, plan = _read(text, name)
     _check_head(plan, name)
     places = [f"{name}{_line(entry)}: step" for entry in given["steps"]]
     wheres = [f"{place} {n}" for n, place in enumerate(places, start=1)]
@@ -96,51 +103,30 @@ def parsed_plan(text: bytes | str, name: str = PLAN_FILE) -> Plan:
     return plan
 
 
+def _read(text: bytes | str, name: str) -> tuple[Mapping[str, Any], Plan]:
+    """What stands in a plan, with lines, and the plan that it makes.
+
+    Raises:
+        ValueError: If it is no plan; with the line.
+    """
+    try:
+        given = parsed_mapping(text, name)
+        for key, word in _READ_AS_FALSE.items():
+            if given.get(key) is False:
+                given[key] = word
+        return given, filled(Plan, given, name)
+    except ValueError as error:
+        told = in_words(error, text, name).replace("any scenario", "any plan")
+        raise ValueError(told) from error
+
+
 def kept_plan(text: str, name: str) -> Plan:
     """A plan that somebody has begun with: read, and judged no more.
 
     Raises:
         ValueError: If it cannot be read.
     """
-    return filled(Plan, parsed_mapping(text, name), name)
-
-
-def check_words(plan: Plan, folder: Path | None, language: str = "") -> None:
-    """Refuse a plan whose words or questionnaires are not there.
-
-    Args:
-        plan: Of the study.
-        folder: Of the study, which may bring its own; None before there is one.
-        language: Of a participant; the plan's if empty.
-
-    Raises:
-        ValueError: Naming what is missing.
-        OSError: If a file cannot be read.
-    """
-    chosen = language or plan.language
-    load_texts(chosen, folder)
-    for each in plan.steps:
-        for step in (each, *each.after):
-            if step.instrument:
-                load_instrument(step.instrument, chosen, folder)
-
-
-def blank_notes(plan: Plan, folder: Path) -> list[str]:
-    """Which places of the consent the lab has not filled; participants read them.
-
-    Raises:
-        ValueError: If words or questionnaires are not there.
-        OSError: If a file cannot be read.
-    """
-    names = {each.instrument for each in plan.steps if each.kind == "consent"}
-    told = []
-    for name in sorted(names):
-        empty = unfilled(load_instrument(name, plan.language, folder))
-        if empty:
-            file = f"{folder}/texts/{plan.language}.yaml"
-            left = ", ".join(empty)
-            told.append(f"{name} has blanks: {left}; fill them in {file}")
-    return told
+    return _read(text, name)[1]
 
 
 def _line(entry: Mapping[str, Any]) -> str:  # Any: as YAML gives it back
@@ -181,12 +167,16 @@ def _check_step(step: PlanStep, where: str, inner: bool = False) -> None:
     where = f"{where} ({step.kind})"
     _check_own(step, where)
     if step.kind in ("ask", "consent") and not step.instrument:
-        raise ValueError(f"{where} names no instrument, as instrument: nasa-tlx")
+        example = "consent" if step.kind == "consent" else "nasa-tlx"
+        raise ValueError(f"{where} names no instrument, as instrument: {example}")
     if step.kind == "instruct" and not step.text.strip():
         raise ValueError(f"{where} has no text; give one, or a name of the text files")
     if step.kind in ("practise", "drive"):
+        if not step.condition:
+            known = ", ".join(CONDITION_NAMES)
+            raise ValueError(f"{where} names no condition; give one of {known}")
         with _at(where):
-            condition_named(step.condition or "none")
+            condition_named(step.condition)
     if step.kind == "practise":
         _check_practice(step, where)
     if step.kind in ("break", "trials") and not _is_length(step.minutes):
@@ -232,10 +222,11 @@ def _check_practice(step: PlanStep, where: str) -> None:
             f"{where}: longest_minutes is {step.longest_minutes:g}; give minutes "
             f"({step.minutes:g}) to {LONGEST_MINUTES:g}"
         )
-    if step.sdlp_below <= 0.0:
+    low, high = _SDLP
+    if not (math.isnan(step.sdlp_below) or low <= step.sdlp_below <= high):
         raise ValueError(
-            f"{where}: sdlp_below is {step.sdlp_below:g} m; nobody drives so straight, "
-            "give 0.3 or so, or leave it out"
+            f"{where}: sdlp_below is {step.sdlp_below:g} m; give {low:g} to {high:g}, "
+            "0.3 or so, or leave it out"
         )
 
 

@@ -93,8 +93,14 @@ def scenario_notes(plan: Plan, folder: Path) -> list[str]:
         OSError: If one cannot be read.
     """
     length, speed = given_or_none(plan.length), given_or_none(plan.speed)
-    return [
-        told
-        for name in scenario_names(plan)
-        for told in chosen(scenario_beside(name, folder), length, speed).notes
-    ]
+    told = []
+    for name in scenario_names(plan):
+        course = chosen(scenario_beside(name, folder), length, speed)
+        own = course.scenario.road.length
+        if course.length > own:
+            told.append(
+                f"length is {course.length:g} m, longer than the {own:g} m of scenario "
+                f"{name}; leave length out to end where its road does"
+            )
+        told += course.notes
+    return told

@@ -21,7 +21,7 @@ from costeer.sessions.plan import (
     session_steps,
     trial_of,
 )
-from costeer.sessions.plan_file import parsed_plan
+from costeer.sessions.plan_file import LARGEST, parsed_plan
 from costeer.sessions.questionnaires.answers import cleaned
 from costeer.sessions.scenarios import scenario_texts
 from costeer.sessions.standing import (
@@ -35,7 +35,7 @@ from costeer.sessions.standing import (
     known_person,
     told_reason,
 )
-from costeer.sessions.store import STORE_FILE, Row, Store, now
+from costeer.sessions.store import STORE_FILE, Row, Store, now, refuse_lost_store
 from costeer.sessions.versions import PlanVersions
 
 # Any, in this file: values of answers, facts and measures.
@@ -60,9 +60,10 @@ class Session:
                 f"{folder} holds no study with people, as there is no {PLAN_FILE} in "
                 f"it; make one with: costeer session new {folder}"
             )
-        text = read_whole(plan_file)
+        text = read_whole(plan_file, LARGEST)
         self.plan = parsed_plan(text, str(plan_file))
         scenarios = scenario_texts(self.plan, folder)
+        refuse_lost_store(folder)
         self.store = Store(folder / STORE_FILE)
         self.versions = PlanVersions(self.store)
         self._steps: dict[str, tuple[Step, ...]] = {}

@@ -63,6 +63,12 @@ OF_PEOPLE = ("steps", "answers", "attempts", "events", "participants")
 """Tables with rows of participants."""
 
 
+_WAY_OUT = (
+    "put a copy of it back; without one the drives in records/ are still whole, and "
+    "costeer report reads that folder by itself"
+)
+
+
 class StoreError(OSError):
     """What was to be kept could not be written; nothing of it was."""
 
@@ -130,12 +136,15 @@ class Store:
             ):
                 self._file.execute(f"PRAGMA {setting}")
             self._check_version()
+            self._check_whole()
             self._file.executescript(_TABLES)
             self._file.execute(f"PRAGMA user_version={VERSION}")
         except sqlite3.DatabaseError as error:
             if isinstance(error, sqlite3.OperationalError):
                 raise StoreError(f"{path} cannot be opened: {error}") from error
-            raise ValueError(f"{path} is no store of a study: {error}") from error
+            raise ValueError(
+                f"{path} is no store of a study: {error}; {_WAY_OUT}"
+            ) from error
 
     def _check_version(self) -> None:
         """Refuse a file of another version or kind.
@@ -149,6 +158,17 @@ class Store:
             raise ValueError(
                 f"{self.path} is of version {found}; this costeer reads {VERSION}"
             )
+
+    def _check_whole(self) -> None:
+        """Refuse a file that is damaged before anything is written into it.
+
+        Raises:
+            ValueError: If it is.
+        """
+        (found,) = self._file.execute("PRAGMA quick_check(1)").fetchone()
+        if found != "ok":
+            told = " ".join(str(found).split())
+            raise ValueError(f"{self.path} is damaged: {told}; {_WAY_OUT}")
 
     def close(self) -> None:
         """Close the file."""
@@ -257,6 +277,33 @@ class Store:
                     f"{self.path}: the rows are deleted, but free pages may still hold "
                     f"them: {error}; free some space and run it again"
                 ) from error
+
+
+def refuse_lost_store(folder: Path) -> None:
+    """Refuse a study whose drives are there and whose store is not.
+
+    Begun anew, it would know nothing of who took part.
+
+    Args:
+        folder: Of the study.
+
+    Raises:
+        ValueError: Saying how many drives there are, and the way out.
+    """
+    file = folder / STORE_FILE
+    parts = [file, file.with_name(f"{STORE_FILE}-wal")]
+    if any(part.exists() and (part.is_dir() or part.stat().st_size) for part in parts):
+        return
+    rooms = ("records", "practice", "aborted")
+    drives = [each for room in rooms for each in (folder / room).glob("*.parquet")]
+    drives = [each for each in drives if not each.name.endswith(".wheel.parquet")]
+    if drives:
+        what = "empty" if file.exists() else "missing"
+        lie = "drive lies" if len(drives) == 1 else "drives lie"
+        raise ValueError(
+            f"{file} is {what}, but {len(drives)} {lie} in the folder; {_WAY_OUT}; or "
+            "begin another study in a new folder"
+        )
 
 
 def _kept(value: Any) -> Any:

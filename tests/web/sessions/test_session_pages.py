@@ -14,7 +14,7 @@ from tests.web.page.conftest import until, wait_for
 from tests.web.sessions.conftest import OpenPage, Study
 
 if TYPE_CHECKING:
-    from playwright.sync_api import Page
+    from playwright.sync_api import Page, Route
 
 pytestmark = [pytest.mark.browser, pytest.mark.timeout(300)]
 
@@ -191,6 +191,26 @@ def test_notes_and_device_texts_are_text_on_the_console(
     console.locator("#checks", has_text="<b>plug it in</b>").wait_for()
     assert console.locator("img").count() == 0
     assert console.locator("#checks small b").count() == 0
+
+
+def test_a_fault_that_waits_for_the_experimenter_is_told_from_afar(
+    study: Study, open_page: OpenPage
+) -> None:
+    drive = {"state": "paused", "is_broken": True, "reason": "The wheel is gone."}
+
+    def broken(route: Route) -> None:
+        answer = route.fetch()
+        told = answer.json()
+        told["step"]["drive"] = {**drive, "losses": [], "unkept": []}
+        route.fulfill(response=answer, json=told)
+
+    console = open_page(study.console)
+    begin(study, console)
+    console.route("**/api/console?*", broken)
+    console.locator("#state", has_text="FAULT").wait_for()
+    told = "The wheel is gone. When that is mended, press Mended, then Go on."
+    console.locator("#banners", has_text=told).wait_for()
+    console.unroute_all(behavior="wait")
 
 
 def test_refusals_stand_beside_what_was_pressed_until_dismissed(

@@ -13,7 +13,7 @@ from typing import Any
 
 from costeer.sessions.balance import balance
 from costeer.sessions.plan import Plan, PlanStep
-from costeer.sessions.plan_file import check_words
+from costeer.sessions.plan_words import check_words
 from costeer.sessions.questionnaires.texts import languages
 from costeer.sessions.standing import HOLDING, known_person
 from costeer.sessions.stopping import take_part_again

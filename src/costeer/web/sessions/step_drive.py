@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from costeer.runtime.frame import PLACE
 from costeer.runtime.markers import Marker
-from costeer.runtime.setup import DriveSetup, course_length
+from costeer.runtime.setup import DriveSetup
 from costeer.runtime.states import Fault, Loss, RunState
 from costeer.runtime.stream import record_paths
 from costeer.web.drive import DriveOnPages, PageOptions
@@ -252,7 +252,7 @@ class StepDrive:
             "is_broken": self._is_broken,
             "seconds": round(self.seconds, 2),
             "metres": round(self.metres, 1),
-            "length": course_length(self.setup.trial),
+            "length": float(self.setup.trial.length),
             "losses": losses,
             "has_page": pages is not None and pages.has_driver,
             "written": self._written(),

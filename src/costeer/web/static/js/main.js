@@ -4,7 +4,7 @@
 
 import { Drive } from "./drive.js";
 import { byId } from "./elements.js";
-import { Hud } from "./hud.js";
+import { Hud, LINK_STATES } from "./hud.js";
 import { credentials, readOptions } from "./options.js";
 import { Replay } from "./replay.js";
 
@@ -26,8 +26,12 @@ function sessionTexts() {
 async function start() {
   const options = readOptions(location.search);
   const query = credentials(location.search);
+  const texts = sessionTexts();
+  const hud = new Hud(texts);
+  hud.state(LINK_STATES.connecting); // building the view holds everything up for a while
   const hello = await (await ask("api/hello", query)).json();
-  if (hello.mode !== "replay") return new Drive(hello, options, query, sessionTexts());
+  if (hello.mode !== "replay") return new Drive(hello, options, query, texts);
+  hud.message();
   const record = await (await ask("api/record", query)).arrayBuffer();
   return new Replay(hello, record, options);
 }

@@ -90,7 +90,7 @@ class Console {
       stopped && `${participant}: ${stopped}.`,
       trouble,
       wording,
-      step?.drive?.reason,
+      faultOf(step?.drive),
       ...(step?.drive?.losses ?? []),
       ...(step?.drive?.unkept ?? []),
       disk && !disk.enough && "The disk is nearly full: free some space before the next drive.",
@@ -101,6 +101,13 @@ class Console {
     byId("banners").replaceChildren(...texts.map((text) => make("li", {}, text,
       ...(text === trouble ? [this.retry()] : []))));
   }
+}
+
+/** Why the drive stands still, and what lets it go on where that is not its participant's to do. */
+function faultOf(drive) {
+  if (!drive?.is_broken) return drive?.reason;
+  const goOn = drive.state === "paused" ? ", then Go on" : "";
+  return `${drive.reason} When that is mended, press Mended${goOn}.`;
 }
 
 function setState(word, kind) {

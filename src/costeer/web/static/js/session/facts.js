@@ -17,6 +17,7 @@ export function shownState({ step, stopped }) {
   if (stopped) return ["STOPPED", "failed"];
   if (!step.drive) return [KINDS[step.kind] ?? step.kind.toUpperCase(), step.kind];
   const { state } = step.drive;
+  if (step.drive.is_broken) return ["FAULT", "failed"];
   return [state.toUpperCase(), state];
 }
 
