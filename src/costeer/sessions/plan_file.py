@@ -173,8 +173,8 @@ def _check_step(step: PlanStep, where: str, inner: bool = False) -> None:
         raise ValueError(f"{where} has no text; give one, or a name of the text files")
     if step.kind in ("practise", "drive"):
         if not step.condition:
-            known = ", ".join(CONDITION_NAMES)
-            raise ValueError(f"{where} names no condition; give one of {known}")
+            given = ", ".join(CONDITION_NAMES)
+            raise ValueError(f"{where} names no condition; give one of {given}")
         with _at(where):
             condition_named(step.condition)
     if step.kind == "practise":
