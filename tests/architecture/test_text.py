@@ -11,7 +11,7 @@ from costeer.cli import CommandGroup
 from tests.architecture.source import ROOT
 
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
-CODE = re.compile(r"^```[a-z]*\n(.*?)^```", re.MULTILINE | re.DOTALL)
+CODE = re.compile(r"^```[^`\n]*\n(.*?)^```", re.MULTILINE | re.DOTALL)
 LATER = re.compile("TO" + "DO|FIX" + "ME|X" + "XX")
 MACHINE = re.compile(r"(?<![\w.])/(?:work|root|home/\w+)/|/t" + "mp/[A-Za-z]")
 
