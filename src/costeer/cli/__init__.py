@@ -55,7 +55,7 @@ class CommandGroup(LazyGroup):
         "replay": "Show a recorded trial in the browser; Ctrl-C ends it.",
         "wheel": "List, calibrate and test steering wheels.",
         "head": "Calibrate the tracker of a participant's head, or show what it sees.",
-        "export": "Write a trial record in the format of other programs.",
+        "export": "Write a record for other programs, or a study for other people.",
         "bench": "Measure the speed of the control step, a trial, a batch or a drive.",
         "doctor": "Show what this computer has and how to fix what is missing.",
     }

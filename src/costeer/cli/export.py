@@ -28,7 +28,7 @@ def export(
         str, typer.Option(help="Format to write: mcap, parquet, or autoui for a study.")
     ] = "mcap",
 ) -> None:
-    """Write a trial record for other programs, or a study for other people.
+    """Write a record for other programs, or a study for other people.
 
     MCAP with Protobuf messages opens in Foxglove, PlotJuggler and rerun. Parquet turns
     the stream of an interrupted drive into a trial record, and a stream whose name ends
