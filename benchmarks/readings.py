@@ -198,12 +198,17 @@ def change(ours: Means, other: Means, measure: str) -> float:
     return 100.0 * (other[measure] / ours[measure] - 1.0)
 
 
+def signed(value: float) -> str:
+    """A whole number with its sign; no sign of nothing."""
+    return f"{value:+.0f}" if abs(value) >= 0.5 else "0"
+
+
 def cell(changes: Sequence[float]) -> str:
     """Median, smallest and largest; bold if it is beyond 5 and all agree in sign."""
     median, low, high = np.median(changes), min(changes), max(changes)
     if max(abs(low), abs(high)) < 0.5:
         return "0"
-    text = f"{median:+.0f} ({low:+.0f} to {high:+.0f})"
+    text = f"{signed(median)} ({signed(low)} to {signed(high)})"
     return f"**{text}**" if abs(median) >= 5.0 and low * high > 0.0 else text
 
 

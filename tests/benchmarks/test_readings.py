@@ -63,6 +63,7 @@ def test_bold_is_what_all_seeds_agree_on() -> None:
     assert cell([-1.0, 7.0, 8.0]) == "+7 (-1 to +8)"
     assert cell([3.0, 4.0, 4.5]) == "+4 (+3 to +4)"
     assert cell([0.1, -0.2, 0.3]) == "0"
+    assert cell([-0.4, -0.2, 3.0]) == "0 (0 to +3)"
 
 
 def test_a_difference_from_manual_of_another_sign_is_named() -> None:

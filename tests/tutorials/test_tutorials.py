@@ -28,7 +28,7 @@ SHORTER = {
     "--participants 10 --scenarios": " --participants 1 --length 1200",
     "--participants 6 --conditions": " --participants 1 --length 1200",
     "--participants 500": " --participants 1 --length 1200",
-    "session power": " --drivers 3 --intention scripted",
+    "session power": " --drivers 5 --intention scripted",
     "session run": " --no-browser --port 0",
 }
 """What commands that hold the key get besides: a later option takes precedence."""
