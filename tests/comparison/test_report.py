@@ -233,3 +233,13 @@ def test_who_is_refused_reads_the_refusal_alone(
     told = capsys.readouterr().err.splitlines()
     assert len(told) == 1
     assert "is not empty and holds no comparison" in told[0]
+
+
+def test_a_line_that_is_never_near_is_not_farther_than_any() -> None:
+    record = made_up(setup("manual"))
+    still = np.full(len(record.columns["time"]), -1.75)
+    # Ten micrometres a second towards a line that is 0.85 m away.
+    drift = still + 1e-5 * np.asarray(record.columns["time"])
+    kept = record._replace(columns={**record.columns, "lateral_position": drift})
+    assert float(str(trial_row(kept)["line_crossing_time_minimum"])) > 1e4
+    assert values(kept)["line_crossing_time_minimum"] == 20.0

@@ -65,7 +65,7 @@ _SAFETY = (
         "Smallest time to the line",
         "Least time to line",
         "s",
-        "smallest time to line crossing while the lane is kept",
+        "smallest time to line crossing while the lane is kept; at most 20 s",
         "s",
         better=MORE,
         digits=2,

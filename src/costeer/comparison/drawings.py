@@ -33,6 +33,8 @@ BEFORE, AFTER = 6.0, 4.0
 _COLUMNS = 3
 _TWO_ROWS = 4
 """So many drives stand in two rows of two, without a hole."""
+_TOP_MM = 13.0
+"""Title of the first row, and the legend above it."""
 _CLOSER_MM = 6.5
 """The torques stand so much nearer to the path above than to the next drive."""
 
@@ -53,11 +55,11 @@ def worst_drawings(folder: Path, cases: Sequence[WorstCase]) -> Exhibit:
     num_rows = -(-len(cases) // num_columns)
     figure = new_figure(FULL_WIDTH_MM, _height_mm(num_rows))
     margins = Margins(
-        left=12.0,
+        left=17.0,
         right=3.0,
-        top=8.0,
+        top=_TOP_MM,
         bottom=3.0,
-        between_columns=13.0,
+        between_columns=10.0,
         between_rows=9.0,
     )
     grid = panels(figure, 2 * num_rows, num_columns, margins, None, (3, 2) * num_rows)
@@ -70,6 +72,9 @@ def worst_drawings(folder: Path, cases: Sequence[WorstCase]) -> Exhibit:
             continue
         _raise(lower, _CLOSER_MM / _height_mm(num_rows))
         _draw(upper, lower, folder / WORST / cases[place].record, cases[place])
+        if column == 0:
+            upper.set_ylabel("y [m]")
+            lower.set_ylabel("Torque\n[N·m]")
     handles, labels = grid[1][0].get_legend_handles_labels()
     if beside := len(cases) % num_columns:  # the last row has a place left
         hole = grid[2 * num_rows - 2][beside]
@@ -89,7 +94,7 @@ def worst_drawings(folder: Path, cases: Sequence[WorstCase]) -> Exhibit:
 
 
 def _height_mm(num_rows: int) -> float:
-    return 4.0 + 46.0 * num_rows
+    return _TOP_MM - 4.0 + 46.0 * num_rows
 
 
 def _raise(axes: Axes, share: float) -> None:
@@ -112,8 +117,6 @@ def _draw(upper: Axes, lower: Axes, path: Path, case: WorstCase) -> None:
     for axes in (upper, lower):
         axes.axvline(0.0, color=INK, linewidth=0.6, linestyle=(0.0, (1.0, 1.2)))
         axes.set_xlim(-BEFORE, AFTER)
-    upper.set_ylabel("y [m]")
-    lower.set_ylabel("Torque\n[N·m]")
     lower.set_xlabel("Time [s]")
 
 

@@ -32,6 +32,11 @@ BESIDE = ("num_lane_changes", "num_dropped_changes", "duration", "distance")
 
 COLUMNS: tuple[str, ...] = (*NAMES, *BESIDE)
 
+NEVER_NEAR = 20.0
+"""Longest time to the line [s]; longer ones count as this. A drive with hardly any lane
+keeping may have one of an hour, which would outweigh those of all others. Source:
+assumed."""
+
 _OF_A_TRIGGER = (
     "false_triggers_per_km",
     "detection_lead_time",
@@ -112,6 +117,8 @@ def _values(trial: Trial, record: TrialRecord) -> dict[str, float]:
         "wheel_rate_rms": wheel_rate_rms(trial.columns),
     }
     values = {name: float(each.value) for name, each in found.items()}
+    least = "line_crossing_time_minimum"
+    values[least] = float(np.minimum(values[least], NEVER_NEAR))
     if not under_assistance(trial.columns):
         values |= dict.fromkeys(_OF_A_TRIGGER, math.nan)
     collisions = values["num_car_collisions"] + values["num_barrier_collisions"]
