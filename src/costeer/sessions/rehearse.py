@@ -16,11 +16,13 @@ from pathlib import Path
 from typing import NamedTuple
 
 from costeer.base.files import write_text
+from costeer.scenarios.reading import shipped
 from costeer.sessions.attempts import Attempts
 from costeer.sessions.balance import balance
 from costeer.sessions.plan import PLAN_FILE
 from costeer.sessions.plan_file import paper_plan_text, parsed_plan
 from costeer.sessions.robot import RehearsalSettings, Robot, digest, playwright
+from costeer.sessions.scenarios import is_file_name
 from costeer.sessions.session import Session
 from costeer.sessions.standing import WHOLE
 
@@ -92,6 +94,11 @@ def rehearse(
         value = getattr(settings, name)
         if not low <= value <= high:
             raise ValueError(f"{name} is {value:g}; give {low:g} to {high:g}")
+    if is_file_name(settings.scenario):
+        raise ValueError(
+            f"scenario is {settings.scenario}; a rehearsal drives on one of "
+            f"{', '.join(shipped())}"
+        )
     plan = rehearsal_plan(settings)
     parsed_plan(plan)
     folder.mkdir(parents=True, exist_ok=True)

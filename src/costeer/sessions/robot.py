@@ -136,7 +136,11 @@ class Robot:
             if on and on != last:
                 last, moved = on, time.monotonic()
             if time.monotonic() - moved > _PATIENCE:
-                raise ValueError(f"{who} stands at {last} for {_PATIENCE:g} s")
+                log = self._folder / "rehearsal.log"
+                raise ValueError(
+                    f"{who} stands at {last} for {_PATIENCE:g} s; the computer is too "
+                    f"busy or too slow, or {log} says why"
+                )
             if time.monotonic() > next_accident:
                 self._accident()
                 next_accident = self._until_accident()

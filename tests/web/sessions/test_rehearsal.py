@@ -9,8 +9,11 @@ from pathlib import Path
 
 import pytest
 
+from costeer.runtime.setup import DriveSetup, check_drive
+from costeer.scenarios.reading import scenario_named, shipped
+from costeer.sessions import robot
 from costeer.sessions.balance import balance
-from costeer.sessions.plan import session_steps
+from costeer.sessions.plan import session_steps, trial_of
 from costeer.sessions.plan_file import parsed_plan
 from costeer.sessions.rehearsal_server import RehearsalServer
 from costeer.sessions.rehearse import rehearsal_plan, rehearse
@@ -41,6 +44,37 @@ def test_settings_that_cannot_be_leave_no_folder(
     with pytest.raises(ValueError, match=f"{next(iter(wrong))} is"):
         rehearse(tmp_path / "study", settings)
     assert not (tmp_path / "study").exists()
+
+
+@pytest.mark.parametrize("scenario", shipped())
+def test_every_scenario_that_ships_can_be_rehearsed(scenario: str) -> None:
+    plan = parsed_plan(rehearsal_plan(RehearsalSettings(scenario=scenario)))
+    drives = [step for step in session_steps(plan, 1) if step.drives]
+    assert {step.scenario for step in drives} == {scenario}
+    for step in drives[:2]:  # a practice and a trial
+        trial = trial_of(plan, step, 1, scenario_named(scenario))
+        check_drive(DriveSetup(trial))
+
+
+def test_a_scenario_of_ones_own_is_refused_before_anything_is_written(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "mine.yaml").write_text("name: mine\n")
+    settings = RehearsalSettings(scenario="mine.yaml")
+    with pytest.raises(ValueError, match=r"mine\.yaml; a rehearsal .*, three-lanes"):
+        rehearse(tmp_path / "study", settings)
+    assert not (tmp_path / "study").exists()
+
+
+def test_a_rehearsal_that_stands_still_says_where_to_look(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(robot, "_PATIENCE", 0.0)
+    monkeypatch.setattr(robot.Robot, "_went_on", lambda _: "practise-manual ready")
+    stuck = robot.Robot(tmp_path, RehearsalSettings(accidents=0.0), None, print)
+    with pytest.raises(ValueError, match=r"too busy or too slow.*rehearsal\.log"):
+        stuck.take_part("R01")
 
 
 @pytest.mark.parametrize("length", [7, 99])
