@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import itertools
 import os
 import re
 import signal
@@ -117,10 +118,14 @@ def run_until_served(line: str, folder: Path, env: dict[str, str]) -> str:
 def run_shell(text: str, folder: Path, env: dict[str, str]) -> str:
     r"""What the lines of a block print; a line that ends in \\ goes on."""
     lines = text.replace("\\\n", " ").splitlines()
-    serves = [line for line in lines if "session run" in line]
-    others = [shortened(line) for line in lines if line not in serves]
-    told = [run_until_served(shortened(line), folder, env) for line in serves]
-    return run(["bash", "-ec", "\n".join(others)], folder, env) + "".join(told)
+    told = ""
+    for serves, some in itertools.groupby(lines, lambda line: "session run" in line):
+        here = [shortened(line) for line in some]
+        if serves:
+            told += "".join(run_until_served(line, folder, env) for line in here)
+        else:
+            told += run(["bash", "-ec", "\n".join(here)], folder, env)
+    return told
 
 
 @pytest.mark.slow

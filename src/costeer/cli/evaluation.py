@@ -233,7 +233,7 @@ def judge(
     where["data"] = data_told(source)
     facts = {**where, "missing_signals": lacks, **assessment_facts(assessment)}
     there = f", scenario {scenario_told(source)}" if source.scenario else ""
-    if chosen.predictor != OURS:
+    if judged.name != OURS:
         title = judged.title + there
         return Result(title, _told(source), facts, assessment, {})
     network = load_weights(chosen.weights)
