@@ -24,7 +24,9 @@ from costeer.plant.vehicle import VehicleInput, VehicleState, vehicle_rate
 
 UNIT = "vehicle-s/s"
 SPEED = 70.0 / 3.6
-SECONDS = 5.0
+PERIOD = 5.0
+"""Of the manoeuvre [s]. Compiled in: who wants to measure less changes `SECONDS`."""
+SECONDS = PERIOD
 PLANT_DT = 1.0 / 480.0
 TICK = 1.0 / 60.0
 AMPLITUDE = 0.01
@@ -38,7 +40,7 @@ _INSTALL = f"not installed; install it with: {install_command('bench')}"
 @compiled
 def steering(time: float) -> float:
     """Road-wheel angle of the manoeuvre [rad]."""
-    return AMPLITUDE * xp.sin(2.0 * math.pi * time / SECONDS)
+    return AMPLITUDE * xp.sin(2.0 * math.pi * time / PERIOD)
 
 
 @compiled
@@ -146,7 +148,7 @@ def _commonroad(effort: Effort) -> Outcome:
 
 def _steering_rate(time: float) -> float:
     """Rate of the road-wheel angle of the manoeuvre [rad/s]."""
-    frequency = 2.0 * math.pi / SECONDS
+    frequency = 2.0 * math.pi / PERIOD
     return AMPLITUDE * frequency * math.cos(frequency * time)
 
 

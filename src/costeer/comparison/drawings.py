@@ -75,12 +75,7 @@ def worst_drawings(folder: Path, cases: Sequence[WorstCase]) -> Exhibit:
         if column == 0:
             upper.set_ylabel("y [m]")
             lower.set_ylabel("Torque\n[N·m]")
-    handles, labels = grid[1][0].get_legend_handles_labels()
-    if beside := len(cases) % num_columns:  # the last row has a place left
-        hole = grid[2 * num_rows - 2][beside]
-        hole.legend(handles, labels, loc="upper left")
-    else:
-        figure.legend(handles, labels, loc="upper right", ncol=2)
+    figure.legend(*grid[1][0].get_legend_handles_labels(), loc="upper right", ncol=2)
     caption = (
         "Upper: lateral position of the car's middle (line) and sides (band), lines of "
         "the road grey. Lower: torques at the wheel, positive to the left. Time is "
