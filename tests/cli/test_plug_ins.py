@@ -185,3 +185,22 @@ def test_parameters_are_listed_with_unit_range_and_source(
     assert '"name": "controller.offset"' in shown
     assert '"unit": "N·m/m"' in shown
     assert main(["parameters", "guidnace"]) == 2
+
+
+@pytest.mark.parametrize(
+    ("options", "told"),
+    [
+        (("--scenario", "expressway-curves", "--intention", "network"), True),
+        (("--scenario", "expressway-curves", "--intention", "scripted"), False),
+        (("--scenario", "expressway", "--intention", "network"), False),
+    ],
+)
+def test_who_lets_the_shipped_network_read_a_road_with_bends_is_told(
+    options: tuple[str, ...],
+    told: bool,
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    out = str(tmp_path / "trial.parquet")
+    assert main(["simulate", "--out", out, "--length", "100", *options]) == 0
+    assert ("has bends" in capsys.readouterr().err) == told

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from costeer.cli import plug_ins
 from costeer.cli.compiling import compiled_for
 from costeer.cli.console import hold_notes, note, progress
 from costeer.cli.scaled import (
@@ -119,6 +120,7 @@ def compare(
         length=length,
         keep_records=keep_records,
     )
+    plug_ins.tell_of_bends(settings.scenarios, intention)
     part = chosen_shard(shard)
     outcome, seconds = _run(out, settings, jobs, Placement(cluster, part))
     _print_outcome(outcome, seconds, part)

@@ -146,6 +146,7 @@ def drive(
         head=chosen_head(head, participant),
         participant=participant,
     )
+    plug_ins.tell_of_bends([course.scenario], intention, predictor, weights)
     options = PageOptions(input=chosen.input, show_signals=signals)
     access = _access(host, port)  # before anything is started
     _run_to_its_end(DriveOnPages(setup, record, options), access, browser, lsl)

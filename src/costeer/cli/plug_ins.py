@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, NamedTuple
 
@@ -11,6 +12,7 @@ from costeer.cli.console import note
 from costeer.cli.units import parse_length, parse_speed
 
 if TYPE_CHECKING:
+    from costeer.scenarios.definition import Scenario as Definition
     from costeer.scenarios.reading import Chosen
 
 Method = Annotated[
@@ -177,3 +179,31 @@ def values_with_threshold(
 def weights_path(weights: Path | None) -> str | None:
     """The file of a predictor's numbers as trials name it."""
     return None if weights is None else str(weights)
+
+
+def tell_of_bends(
+    scenarios: Iterable[str | Definition],
+    intention: str,
+    predictor: str = "gru",
+    weights: Path | None = None,
+) -> None:
+    """Say that the network which comes with costeer has seen straight roads alone.
+
+    Args:
+        scenarios: To be driven; names and files, too.
+        intention: Where the crossing probability comes from.
+        predictor: That was asked for.
+        weights: Its file.
+    """
+    from costeer.intention.predictors.registry import OURS
+    from costeer.scenarios.reading import scenario_named
+
+    if (intention, predictor, weights) != ("network", OURS, None):
+        return
+    bent = [each.name for each in map(scenario_named, scenarios) if each.road.stations]
+    if bent:
+        note(
+            f"costeer: {', '.join(bent)} has bends, and the network that comes with "
+            "costeer has seen straight roads alone: it triggers falsely there, about "
+            "once a kilometre; see docs/intention.md"
+        )

@@ -111,6 +111,7 @@ def simulate(
         initial_offset=initial_offset,
         mistakes=tuple(mistake or ()),
     )
+    plug_ins.tell_of_bends([course.scenario], intention, predictor, weights)
     simulate_to_file(out, setup, engine)
 
 

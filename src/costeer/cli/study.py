@@ -118,6 +118,7 @@ def study(
         )
     )
     _warn_if_unbalanced(settings)
+    plug_ins.tell_of_bends([scenario], intention, predictor, weights)
     scale = Scale(
         cluster=check_cluster(cluster),
         records=records,
