@@ -24,7 +24,7 @@ export UV_PYTHON_DOWNLOADS = never
 
 help:
 	@echo "make study     run the experiment, write $(OUT)/report.html"
-	@echo "make test      run the tests that are quick, in about 5 minutes"
+	@echo "make test      run the tests that are quick, in about 3 minutes"
 	@echo "make test-all  run every test with branch coverage; SEED=1 shuffles them"
 	@echo "make check     formatting, lint, types, import order, documentation"
 	@echo "make bench     measure speed, beside two peers"
