@@ -183,7 +183,7 @@ def select(condition: Flag, if_true: Value, if_false: Value) -> Value:
 
 
 def when(
-    condition: Flag,
+    condition: Flag | None,
     function: Callable[..., Value],
     arguments: tuple[Any, ...],
     otherwise: Value,
@@ -191,8 +191,11 @@ def when(
     """`function(*arguments)` by a flag, or else a value of the same kind.
 
     Where the flag is false compiled code does not call the function; JAX does, and
-    takes the other value.
+    takes the other value. With None instead of a flag there is nothing to call the
+    function for, and it is not even compiled.
     """
+    if condition is None:
+        return otherwise
     if isinstance(condition, (bool, np.bool_)):
         return function(*arguments) if condition else otherwise
     return select(condition, function(*arguments), otherwise)
@@ -297,6 +300,9 @@ def _select(condition: Any, if_true: Any, if_false: Any) -> Any:
 
 @overload(when, strict=False)
 def _when(condition: Any, function: Any, arguments: Any, otherwise: Any) -> Any:
+    if isinstance(condition, types.NoneType):
+        return lambda condition, function, arguments, otherwise: otherwise
+
     def implementation(
         condition: Any, function: Any, arguments: Any, otherwise: Any
     ) -> Any:

@@ -28,7 +28,7 @@ def packed_size(value: Any) -> int:
     """Return how many float64 the nested named tuple `value` takes."""
     if isinstance(value, tuple):
         return sum(packed_size(part) for part in value)
-    return int(np.size(value))
+    return 0 if value is None else int(np.size(value))
 
 
 def leaf_names(value: Any, prefix: str = "") -> list[str]:
@@ -72,7 +72,7 @@ def _numbers(value: Any, found: list[float]) -> list[float]:
             _numbers(part, found)
     elif isinstance(value, (float, int)):
         found.append(value)
-    else:
+    elif value is not None:
         found.extend(np.ravel(value).tolist())
     return found
 
@@ -94,6 +94,8 @@ def _unpack(like: Any, array: NDArray[np.float64], offset: int) -> tuple[Any, in
             value, offset = _unpack(part, array, offset)
             parts.append(value)
         return cast("Any", type(like))(*parts), offset
+    if like is None:
+        return None, offset
     if isinstance(like, np.ndarray):
         end = offset + like.size
         return array[offset:end].reshape(like.shape).copy(), end
@@ -155,7 +157,7 @@ def _stored(typing: Any, array: Any, value: Any) -> Any:
                 context.compile_internal(builder, _write_out, called, given)
                 made = context.make_array(kind)(context, builder, part)
                 place.skip(made.nitems)
-            else:
+            elif not isinstance(kind, types.NoneType):
                 number = context.cast(builder, part, kind, types.float64)
                 builder.store(number, place.next())
 
@@ -186,6 +188,8 @@ def _loaded(typing: Any, like: Any, array: Any) -> Any:
                 made = context.make_array(kind)(context, builder, part)
                 place.skip(made.nitems)
                 return value
+            if isinstance(kind, types.NoneType):
+                return part
             number = builder.load(place.next())
             return context.cast(builder, number, types.float64, kind)
 

@@ -21,7 +21,13 @@ from costeer.loop.events import (
     lead_of,
     step_events,
 )
-from costeer.loop.mistakes import Heard, MistakeState, given_torque, heard
+from costeer.loop.mistakes import (
+    Heard,
+    MistakeState,
+    given_torque,
+    goes_wrong,
+    heard,
+)
 from costeer.loop.parameters import DT, LoopParameters
 from costeer.methods.interface import Rule
 from costeer.plant.fleet_motion import World, moved
@@ -189,14 +195,14 @@ def half_step(
     limit = xp.select(parameters.assists > 0.5, parameters.column.torque_limit, 0.0)
     given = wrong, state.mistakes, road, seen, request, seat.action, state.time
     truly = Heard(seen, request, state.mistakes)
-    got = xp.when(wrong.any > 0.5, heard, given, truly)
+    got = xp.when(goes_wrong(wrong), heard, given, truly)
     method_state, signals = rule.step(
         parameters.controller, state.method, got.measurement, got.request, DT
     )
     asked = contained(signals.applied_torque, limit)
     told = wrong, got.memory, seen.side, asked, limit, state.time
     same = got.memory, asked
-    memory, command = xp.when(wrong.any > 0.5, given_torque, told, same)
+    memory, command = xp.when(goes_wrong(wrong), given_torque, told, same)
     sample = Sample(
         time=state.time,
         measurement=measurement,

@@ -132,6 +132,22 @@ class Heard(NamedTuple):
 
 
 @compiled
+def goes_wrong(parameters: MistakeParameters | None) -> Flag | None:
+    """Whether anything does; None where nothing ever can."""
+    if parameters is None:
+        return None
+    return parameters.any > 0.5
+
+
+@compiled
+def loses_head(parameters: MistakeParameters | None) -> Flag:
+    """Whether the head tracker sees nothing all the time."""
+    if parameters is None:
+        return False
+    return parameters.head_lost > 0.5
+
+
+@compiled
 def recurs(time: Real, period: Real, duration: Real) -> Flag:
     """Whether something lasts now that begins after each period.
 

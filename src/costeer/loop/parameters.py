@@ -9,7 +9,7 @@ from costeer.drivers.driver import DriverParameters
 from costeer.loop.clock import DT as DT
 from costeer.loop.mistakes import MistakeParameters
 from costeer.plant.alignment import STRAIGHT, Alignment
-from costeer.plant.fleet import NO_FLEET, FleetParameters
+from costeer.plant.fleet import NO_FLEET, FleetParameters, num_cars
 from costeer.plant.following import FollowingParameters
 from costeer.plant.parameters import CarParameters, ColumnParameters, RoadParameters
 from costeer.plant.stretches import NOTHING_HAPPENS, Stretches
@@ -75,3 +75,32 @@ class LoopParameters(NamedTuple, Generic[P]):
     fleet: FleetParameters = NO_FLEET
     stretches: Stretches = NOTHING_HAPPENS
     mistakes: MistakeParameters = MistakeParameters()
+
+
+class Bare(NamedTuple):
+    """What a trial does without, so that its machine code has nothing of it.
+
+    Attributes:
+        fleet: There is no other car.
+        mistakes: Nothing goes wrong on purpose.
+    """
+
+    fleet: bool
+    mistakes: bool
+
+
+def bare_of(parameters: LoopParameters[Any]) -> Bare:
+    """What a trial does without."""
+    return Bare(
+        fleet=num_cars(parameters.fleet) == 0,
+        mistakes=parameters.mistakes == MistakeParameters(),
+    )
+
+
+def without(parameters: LoopParameters[P], bare: Bare) -> LoopParameters[P]:
+    """The parameters with None for what a trial does without."""
+    nothing: Any = None  # Any: only compiled loops meet it, `goes_wrong` and the like
+    return parameters._replace(
+        fleet=nothing if bare.fleet else parameters.fleet,
+        mistakes=nothing if bare.mistakes else parameters.mistakes,
+    )

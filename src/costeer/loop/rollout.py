@@ -19,7 +19,7 @@ from costeer.base.packing import layout_of, pack, packed, unpack
 from costeer.drivers.interface import AnyDriver, DriverLaw, law_of
 from costeer.drivers.population import VIRTUAL
 from costeer.loop.jax_rollout import jax_rollout
-from costeer.loop.parameters import LoopParameters
+from costeer.loop.parameters import Bare, LoopParameters, bare_of, without
 from costeer.loop.rows import LoopRule, loop_rule, rules_of, writer_of
 from costeer.loop.step import LoopState, Rules, initial_state
 from costeer.loop.tick import Network, Script, run
@@ -52,12 +52,14 @@ class Advance(Protocol):
 
 
 def _compiled_trial(
-    method: Method[P, S], driver: AnyDriver, hands: Any
+    method: Method[P, S], driver: AnyDriver, hands: Any, bare: Bare
 ) -> Any:  # Any: parameters of the driver; a compiled function of Numba
     """The compiled trial of both; its machine code lies in a folder of their own."""
     ((begin, step), (sit, act)), fill = loop_rule(method, driver)
-    like = LoopParameters(usual_parameters(method), driver=hands)
-    like_state = initial_state(rules_of(method, driver), like)
+    usual = LoopParameters(usual_parameters(method), driver=hands)
+    like = without(usual, bare)
+    like_state = initial_state(rules_of(method, driver), usual)
+    like_state = _on_bare_road(like_state) if bare.fleet else like_state
 
     def run_packed(
         parameters: Rows,
@@ -104,9 +106,11 @@ def begun(
         return _in_python(method, driver, parameters, state, network)
     if engine != "numba":
         raise ValueError(f"engine '{engine}' is not known; choose numba, python or jax")
-    numbers, memory = packed(parameters), packed(state)
-    seat = law_of(driver), layout_of(parameters.driver)
-    make = partial(_compiled_trial, driver=driver, hands=parameters.driver)
+    bare = bare_of(parameters)
+    numbers = packed(without(parameters, bare))
+    memory = packed(_on_bare_road(state) if bare.fleet else state)
+    seat = law_of(driver), layout_of(parameters.driver), bare
+    make = partial(_compiled_trial, driver=driver, hands=parameters.driver, bare=bare)
 
     def advance(script: Script, noise: Rows, rows: Rows, keep: bool = True) -> int:
         now = memory if keep else memory.copy()
@@ -120,6 +124,13 @@ def begun(
         return count
 
     return advance
+
+
+def _on_bare_road(state: LoopState[S]) -> LoopState[S]:
+    """A state in which there is no other car, and no room for one."""
+    nothing: Any = None  # Any: as in `without`
+    events = state.control.events._replace(fleet=nothing)
+    return state._replace(control=state.control._replace(events=events))
 
 
 def _in_python(

@@ -32,6 +32,7 @@ from costeer.loop.half_step import (
     half_step,
     initial_control,
 )
+from costeer.loop.mistakes import loses_head
 from costeer.loop.parameters import DT, LoopParameters
 from costeer.methods.interface import Rule
 from costeer.plant import world
@@ -115,7 +116,7 @@ def seen_head(
     """What the tracker says at a position along the road [m], if it is not lost."""
     stretch, lasts = stretch_at(parameters.stretches, position)
     lost = lasts & (stretch.head_lost > 0.5)
-    lost = lost | (parameters.mistakes.head_lost > 0.5)
+    lost = lost | loses_head(parameters.mistakes)
     return head._replace(valid=head.valid & xp.logical_not(lost))
 
 

@@ -12,6 +12,7 @@ from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
+from numba import types
 from numba.extending import overload
 from numpy.typing import NDArray
 
@@ -233,6 +234,9 @@ def with_ego(fleet: Fleet, ego: Car) -> Fleet:
 
 @overload(with_ego, strict=False)
 def _with_ego(fleet: Any, ego: Any) -> Any:
+    if isinstance(fleet, types.NoneType):
+        return lambda fleet, ego: fleet
+
     def implementation(fleet: Any, ego: Any) -> Any:
         _write_car(fleet.cars, 0, ego)
         return fleet
@@ -241,7 +245,7 @@ def _with_ego(fleet: Any, ego: Any) -> Any:
 
 
 @compiled
-def write_cars(out: Numbers, num_cars: int, fleet: Fleet) -> None:
+def write_cars(out: Numbers, num_cars: int, fleet: Fleet | None) -> None:
     """Write where the other cars are into the last numbers of a row.
 
     Args:
@@ -249,6 +253,8 @@ def write_cars(out: Numbers, num_cars: int, fleet: Fleet) -> None:
         num_cars: Other cars in use [-].
         fleet: Where they are.
     """
+    if fleet is None:
+        return
     for place in range(num_cars):
         car: Car = _read_car(fleet.cars, place + 1)
         there, first = car.present > 0.5, len(out) + 3 * (place - num_cars)
@@ -269,6 +275,8 @@ def car_numbers(fleet: Fleet, num_cars: int) -> list[Any]:
 
 
 @compiled
-def num_cars(parameters: FleetParameters) -> int:
+def num_cars(parameters: FleetParameters | None) -> int:
     """Other cars in use [-]."""
+    if parameters is None:
+        return 0
     return int(parameters.num_places) - 1

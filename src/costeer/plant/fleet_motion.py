@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
+from numba import types
 from numba.extending import overload
 
 from costeer.base import array as xp
@@ -355,6 +356,9 @@ def _moved_together(parameters: FleetParameters, fleet: Fleet, world: World) -> 
 
 @overload(moved, strict=False)
 def _moved(parameters: Any, fleet: Any, world: Any) -> Any:
+    if isinstance(parameters, types.NoneType):
+        return lambda parameters, fleet, world: fleet
+
     def implementation(parameters: Any, fleet: Any, world: Any) -> Any:
         if parameters.num_places <= 1.0:
             return fleet

@@ -208,8 +208,10 @@ NOBODY = Neighbours()
 
 
 @compiled
-def has_cars(parameters: FleetParameters) -> Flag:
-    """Whether a scenario has other cars."""
+def has_cars(parameters: FleetParameters | None) -> Flag | None:
+    """Whether a scenario has other cars; None where no fleet is there at all."""
+    if parameters is None:
+        return None
     return parameters.num_places > 1.0
 
 
