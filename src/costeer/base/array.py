@@ -10,6 +10,7 @@ docs/decisions/0002-engine.md.
 from __future__ import annotations
 
 import math
+import operator
 import sys
 from collections.abc import Callable
 from typing import Any, TypeAlias, TypeVar, cast
@@ -20,6 +21,7 @@ from numba.extending import overload, register_jitable
 
 import costeer.base.replace
 import costeer.base.whole  # noqa: F401  what compiled code does with named tuples
+from costeer.base import lanes
 
 Real: TypeAlias = float
 """A float, an array of them or a traced value: annotations show the scalar."""
@@ -244,57 +246,80 @@ _MATH: dict[Callable[..., Any], Callable[..., Any]] = {
     cos: math.cos,
     tan: math.tan,
     atan: math.atan,
-    sqrt: math.sqrt,
     exp: math.exp,
     log: math.log,
-    isfinite: math.isfinite,
 }
 
 
 def _bind(function: Callable[..., Any], target: Callable[..., Any]) -> None:
     """Let Numba use `target` where the source says `function`."""
 
+    apart = lanes.each(target)
+
     @overload(function, strict=False)
     def _(x: Any) -> Any:
-        return lambda x: target(x)
+        return (lambda x: apart(x)) if lanes.in_lanes(x) else (lambda x: target(x))
 
 
 for _function, _target in _MATH.items():
     _bind(_function, _target)
 
 
-@overload(floor, strict=False)
-def _floor(x: Any) -> Any:
-    return lambda x: np.floor(x)
+_TOGETHER: dict[Callable[..., Any], tuple[Callable[..., Any], Any]] = {
+    sqrt: (math.sqrt, lanes.sqrt),
+    floor: (np.floor, lanes.floor),
+    absolute: (abs, lanes.absolute),
+    isfinite: (math.isfinite, lanes.isfinite),
+    logical_not: (operator.not_, lanes.logical_not),
+}
 
 
-@overload(absolute, strict=False)
-def _absolute(x: Any) -> Any:
-    return lambda x: abs(x)
+def _bind_together(function: Callable[..., Any], alone: Any, together: Any) -> None:
+    """Let Numba use one target for a plain value, another one for eight."""
+
+    @overload(function, strict=False)
+    def _(x: Any) -> Any:
+        return (lambda x: together(x)) if lanes.in_lanes(x) else (lambda x: alone(x))
+
+
+for _function, (_alone, _eight) in _TOGETHER.items():
+    _bind_together(_function, _alone, _eight)
 
 
 @overload(minimum, strict=False)
 def _minimum(a: Any, b: Any) -> Any:
+    if lanes.in_lanes(a, b):
+        return lambda a, b: lanes.select(a < b, a, b)
     return lambda a, b: a if a < b else b
 
 
 @overload(maximum, strict=False)
 def _maximum(a: Any, b: Any) -> Any:
+    if lanes.in_lanes(a, b):
+        return lambda a, b: lanes.select(a > b, a, b)
     return lambda a, b: a if a > b else b
 
 
 @overload(clip, strict=False)
 def _clip(x: Any, low: Any, high: Any) -> Any:
+    if lanes.in_lanes(x, low, high):
+        return lambda x, low, high: select(x < low, low, select(x > high, high, x))
     return lambda x, low, high: low if x < low else (high if x > high else x)
-
-
-@overload(logical_not, strict=False)
-def _logical_not(flag: Any) -> Any:
-    return lambda flag: not flag
 
 
 @overload(select, strict=False)
 def _select(condition: Any, if_true: Any, if_false: Any) -> Any:
+    if isinstance(condition, lanes.Mask):
+        return lambda condition, if_true, if_false: lanes.select(
+            condition, if_true, if_false
+        )
+    if lanes.in_lanes(if_true, if_false):
+
+        def either(condition: Any, if_true: Any, if_false: Any) -> Any:
+            one, other = lanes.spread(if_true), lanes.spread(if_false)
+            return one if condition else other
+
+        return either
     return lambda condition, if_true, if_false: if_true if condition else if_false
 
 
@@ -302,6 +327,28 @@ def _select(condition: Any, if_true: Any, if_false: Any) -> Any:
 def _when(condition: Any, function: Any, arguments: Any, otherwise: Any) -> Any:
     if isinstance(condition, types.NoneType):
         return lambda condition, function, arguments, otherwise: otherwise
+    if isinstance(condition, lanes.Mask):
+
+        def where_any(
+            condition: Any, function: Any, arguments: Any, otherwise: Any
+        ) -> Any:
+            found = lanes.spread(otherwise)
+            if lanes.any_lane(condition):
+                found = lanes.select(condition, function(*arguments), otherwise)
+            return found
+
+        return where_any
+    if lanes.in_lanes(arguments, otherwise):
+
+        def of_all(
+            condition: Any, function: Any, arguments: Any, otherwise: Any
+        ) -> Any:
+            found = lanes.spread(otherwise)
+            if condition:
+                found = lanes.spread(function(*arguments))
+            return found
+
+        return of_all
 
     def implementation(
         condition: Any, function: Any, arguments: Any, otherwise: Any
@@ -313,6 +360,16 @@ def _when(condition: Any, function: Any, arguments: Any, otherwise: Any) -> Any:
 
 @overload(repeat, strict=False)
 def _repeat(function: Any, times: Any, state: Any, arguments: Any) -> Any:
+    if lanes.in_lanes(state):
+
+        def together(function: Any, times: Any, state: Any, arguments: Any) -> Any:
+            now = lanes.spread(state)
+            for _ in range(times):
+                now = lanes.spread(function(now, arguments))
+            return now
+
+        return together
+
     def implementation(function: Any, times: Any, state: Any, arguments: Any) -> Any:
         for _ in range(times):
             state = function(state, arguments)

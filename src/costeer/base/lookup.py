@@ -10,6 +10,7 @@ import numpy as np
 from numba.extending import overload
 from numpy.typing import NDArray
 
+from costeer.base import lanes
 from costeer.base.array import Real, compiled
 
 Numbers = NDArray[np.float64]
@@ -38,6 +39,17 @@ def interval(table: Numbers, width: int, count: Real, position: Real) -> int:
 
 @overload(interval, strict=False)
 def _interval(table: Any, width: Any, count: Any, position: Any) -> Any:
+    if lanes.in_lanes(position):
+
+        def of_each(table: Any, width: Any, count: Any, position: Any) -> Any:
+            found = lanes.spread(0.0)
+            for row in range(1, int(count)):
+                begun = table[row * width] <= position
+                found = lanes.select(begun, float(row), found)
+            return found
+
+        return of_each
+
     def implementation(table: Any, width: Any, count: Any, position: Any) -> Any:
         low, high = 0, int(count)
         while high - low > 1:
@@ -62,6 +74,8 @@ def element(values: Numbers, index: int) -> Real:
 
 @overload(element, strict=False)
 def _element(values: Any, index: Any) -> Any:
+    if lanes.in_lanes(index):
+        return lambda values, index: lanes.gathered(values, index)
     return lambda values, index: values[index]
 
 

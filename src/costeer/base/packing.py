@@ -17,6 +17,8 @@ from numba.core import errors
 from numba.extending import overload
 from numpy.typing import NDArray
 
+from costeer.base import lanes
+
 Tuple = TypeVar("Tuple")
 
 # Any: Numba types neither its types nor its decorators.
@@ -206,3 +208,57 @@ def _pack_compiled(array: Any, value: Any) -> Any:
 @overload(unpack, strict=False)
 def _unpack_compiled(like: Any, array: Any) -> Any:
     return lambda like, array: _loaded(like, array)
+
+
+def _read_rows(array: NDArray[np.float64], start: int, like: Any) -> Any:
+    values = np.empty((like.size, array.shape[1]))
+    values[:] = array[start : start + like.size]
+    return values.T
+
+
+_WINDOWS = types.Array(types.float64, 2, "F")
+
+
+def _spread_kind(kind: Any) -> Any:
+    if isinstance(kind, types.BaseTuple):
+        inner = [_spread_kind(each) for each in kind.types]
+        return types.BaseTuple.from_types(inner, kind.instance_class)
+    return _WINDOWS if isinstance(kind, types.Array) else lanes.spread_type(kind)
+
+
+@intrinsic
+def unpack_lanes(typing: Any, like: Any, array: Any) -> Any:
+    """A tuple like another with eight of each number, from an array `(number, lane)`.
+
+    Arrays in it become arrays `(lane, element)`; whole numbers are those of the first
+    lane.
+    """
+
+    def read(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        rows = arguments[1]
+        one = context.get_constant(types.intp, 1)
+        at = context.get_constant(types.intp, 0)
+
+        def take(kind: Any, part: Any) -> Any:
+            nonlocal at
+            whole, start = _spread_kind(kind), at
+            if isinstance(kind, types.BaseTuple):
+                inner = [
+                    take(each, builder.extract_value(part, k))
+                    for k, each in enumerate(kind.types)
+                ]
+                return context.make_tuple(builder, whole, inner)
+            if isinstance(kind, types.NoneType):
+                return part
+            if isinstance(kind, types.Array):
+                made = context.make_array(kind)(context, builder, part)
+                at = builder.add(at, made.nitems)
+                called = whole(array, types.intp, kind)
+                given = rows, start, part
+                return context.compile_internal(builder, _read_rows, called, given)
+            at = builder.add(at, one)
+            return lanes.taken(context, builder, kind, array, rows, start)
+
+        return take(like, arguments[0])
+
+    return _spread_kind(like)(like, array), read

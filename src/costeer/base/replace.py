@@ -19,6 +19,8 @@ from numba.core.typing.templates import (
 )
 from numba.extending import overload
 
+from costeer.base import lanes
+
 Record = TypeVar("Record")
 
 # Any, here and below: Numba types neither its types nor its decorators.
@@ -65,6 +67,8 @@ def _converted(place: str, field: str, old: Any, new: Any) -> str:
     if given == old or (
         isinstance(old, types.Float) and isinstance(given, types.Float)
     ):
+        return field
+    if lanes.in_lanes(old, given) and lanes.spread_type(old) == lanes.spread_type(given):
         return field
     if isinstance(old, types.Float) and isinstance(
         given, types.Integer | types.Boolean

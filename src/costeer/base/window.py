@@ -13,6 +13,7 @@ import numpy as np
 from numba.extending import overload
 from numpy.typing import NDArray
 
+from costeer.base import lanes
 from costeer.base.array import Flag, Real, compiled
 
 
@@ -52,6 +53,14 @@ def _with_value(values: Any, index: Any, value: Any) -> Any:
 
 @overload(_with_value, strict=False)
 def _with_value_in_place(values: Any, index: Any, value: Any) -> Any:
+    if lanes.in_lanes(value):
+
+        def together(values: Any, index: Any, value: Any) -> Any:
+            lanes.store(values, index, value)
+            return values
+
+        return together
+
     def implementation(values: Any, index: Any, value: Any) -> Any:
         values[index] = value
         return values
@@ -66,6 +75,15 @@ def _total(values: Any) -> Any:
 
 @overload(_total, strict=False)
 def _total_compiled(values: Any) -> Any:
+    if values.ndim == 2:
+
+        def together(values: Any) -> Any:
+            total = lanes.load(values, 0)
+            for index in range(1, values.shape[1]):
+                total = total + lanes.load(values, index)
+            return total
+
+        return together
     return lambda values: values.sum()
 
 

@@ -10,9 +10,11 @@ import math
 from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
+from numba.extending import overload
 from numpy.typing import NDArray
 
 from costeer.base import array as xp
+from costeer.base import lanes
 from costeer.base.array import Flag, Real, compiled, inlined
 from costeer.base.packing import unpack
 from costeer.controller.signals import Request
@@ -141,16 +143,50 @@ def intention_sample(measurement: Measurement) -> IntentionSample:
     return facing(sample, measurement.side)
 
 
+def probability_of(
+    weights: BracketWeights, memory: BracketState, sample: IntentionSample
+) -> Real:
+    """What the network says of a sample, NaN before its window is full [-].
+
+    Args:
+        weights: Of the network.
+        memory: Changed in place; of eight trials, arrays with an axis of lanes first.
+        sample: Facing right.
+    """
+    return advance(weights, memory, sample)
+
+
+@overload(probability_of, strict=False)
+def _probability_of(weights: Any, memory: Any, sample: Any) -> Any:
+    if not lanes.in_lanes(sample):
+        return lambda weights, memory, sample: advance(weights, memory, sample)
+
+    def of_each(weights: Any, memory: Any, sample: Any) -> Any:
+        told = np.empty((1, lanes.WIDTH))
+        for lane in range(lanes.WIDTH):
+            own = BracketState(
+                memory.hidden[lane],
+                memory.ring[lane],
+                memory.inputs[lane],
+                memory.absent[lane],
+                memory.counters[lane],
+            )
+            told[0, lane] = advance(weights, own, lanes.of_lane(sample, lane))
+        return lanes.load(told, 0)
+
+    return of_each
+
+
 @compiled
 def network_verdict(
     road: RoadParameters, network: Network, measurement: Measurement
 ) -> Verdict:
     """What the network says: asked for each side where there may be lanes on both."""
-    usual = advance(network.weights, network.memory, intention_sample(measurement))
+    usual = probability_of(network.weights, network.memory, intention_sample(measurement))
     if road.num_lanes <= 2.0:
         return Verdict(usual, measurement.side)
     turned = facing_beyond(road, measurement)
-    other = advance(network.weights, network.beyond, intention_sample(turned))
+    other = probability_of(network.weights, network.beyond, intention_sample(turned))
     return likelier(road, measurement.lane, measurement.side, usual, other)
 
 
@@ -168,6 +204,15 @@ def scripted_probability(
         parameters.follows_plan > 0.5, plan.change_duration / 2.0, horizon
     )
     return xp.select(planned_to_cross(plan.time_to_crossing, begins), 1.0, 0.0)
+
+
+@compiled
+def scripted_verdict(
+    parameters: LoopParameters[Any], state: LoopState[S], horizon: Real
+) -> Verdict:
+    """What a system says that knows the driver's plan."""
+    crosses = scripted_probability(parameters, state, horizon)
+    return Verdict(crosses, state.plan.side)
 
 
 @compiled
@@ -191,14 +236,15 @@ def tick(
 ) -> tuple[LoopState[S], Sample[S]]:
     """One control step with its verdict and its sample."""
     measurement = sense(parameters, state)
-    verdict = NO_VERDICT
-    if script.intention == INTENTION_SCRIPTED:
-        crosses = scripted_probability(parameters, state, script.horizon)
-        verdict = Verdict(crosses, state.plan.side)
-    if script.intention == INTENTION_NETWORK:
-        verdict = network_verdict(parameters.road, network, measurement)
-    if script.intention == INTENTION_GIVEN:
-        verdict = Verdict(script.probability, script.side)
+    verdict = Verdict(script.probability, script.side)  # NaN unless it is given
+    scripted = parameters, state, script.horizon
+    verdict = xp.when(
+        script.intention == INTENTION_SCRIPTED, scripted_verdict, scripted, verdict
+    )
+    asks = parameters.road, network, measurement
+    verdict = xp.when(
+        script.intention == INTENTION_NETWORK, network_verdict, asks, verdict
+    )
     request = Request(
         crossing_probability=verdict.probability,
         requested=requested(script.trigger_times, state.control.time),
