@@ -253,7 +253,6 @@ _MATH: dict[Callable[..., Any], Callable[..., Any]] = {
 
 def _bind(function: Callable[..., Any], target: Callable[..., Any]) -> None:
     """Let Numba use `target` where the source says `function`."""
-
     apart = lanes.each(target)
 
     @overload(function, strict=False)

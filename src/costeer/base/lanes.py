@@ -1,13 +1,7 @@
-"""Eight trials at a time: a number of compiled code that is a vector of eight.
+"""What compiled code does with values of eight trials, besides arithmetic.
 
-LLVM does not turn a loop over drivers into vector instructions by itself. Where a number
-is of this kind, the same equations, compiled for it, do eight trials with each
-instruction. Each lane computes what a plain number computes, to the last bit: only
-additions, products, quotients, square roots and comparisons, which the standard rounds
-in one way (IEEE 754), are done together; sines and the like lane by lane, by the same
-function of the C library.
-
-What base/array.py says for other engines is said for this one here.
+Choosing lane by lane, spreading a plain value over the lanes, taking one lane out, and
+reading and writing arrays whose last axis is the lane. See vectors.py.
 """
 
 from __future__ import annotations
@@ -20,184 +14,32 @@ from typing import Any, cast
 from llvmlite import ir as llvm
 from numba import extending
 from numba import types as numba_types
-from numba.core import errors, imputils
-from numba.core.datamodel import models as numba_models
-from numba.core.typeconv import Conversion
-from numba.core.typing import templates as numba_templates
+from numba.core import errors
+
+from costeer.base.vectors import (
+    FLAGS,
+    NUMBERS,
+    PLACE,
+    WIDTH,
+    Lanes,
+    Mask,
+    in_lanes,
+    is_vector,
+    lane_by_lane,
+    spread_type,
+)
+
+__all__ = ["WIDTH", "Mask", "in_lanes", "spread_type"]
 
 # Any, in this file: Numba and LLVM's builder have no types.
 types: Any = numba_types
-models: Any = numba_models
-templates: Any = numba_templates
 ir: Any = llvm
-_lowers: Any = imputils.lower_builtin
-_casts: Any = imputils.lower_cast
-_register: Any = extending.register_model
 intrinsic = cast("Callable[[Any], Any]", extending.intrinsic)
-
-WIDTH = 8
-"""Lanes: one AVX-512 register of doubles; twice as many gain nothing."""
-
-_FLAG, _PLACE = ir.IntType(1), ir.IntType(32)
-
-
-class _Vector(types.Type):  # type: ignore[misc]  # Numba has no types
-    """What both kinds share: a plain number or flag becomes one of eight equal ones."""
-
-    plain: tuple[Any, ...] = ()
-
-    def can_convert_from(self, context: Any, other: Any) -> Any:
-        """A plain one may stand for eight."""
-        return Conversion.safe if isinstance(other, self.plain) else None
-
-    def unify(self, context: Any, other: Any) -> Any:
-        """Where two branches meet, a plain one becomes eight."""
-        return self if isinstance(other, self.plain) else None
-
-
-class Lanes(_Vector):
-    """A number of each of eight trials."""
-
-    plain = (types.Float, types.Integer)
-
-
-class Mask(_Vector):
-    """A flag of each of eight trials."""
-
-    plain = (types.Boolean,)
-
-
-NUMBERS, FLAGS = Lanes("Lanes"), Mask("Mask")
-
-
-@_register(Lanes)
-class _LanesModel(models.PrimitiveModel):  # type: ignore[misc]  # as above
-    def __init__(self, manager: Any, kind: Any) -> None:
-        super().__init__(manager, kind, ir.VectorType(ir.DoubleType(), WIDTH))
-
-
-@_register(Mask)
-class _MaskModel(models.PrimitiveModel):  # type: ignore[misc]  # as above
-    def __init__(self, manager: Any, kind: Any) -> None:
-        super().__init__(manager, kind, ir.VectorType(_FLAG, WIDTH))
-
-
-def in_lanes(*kinds: Any) -> bool:
-    """Whether a type, or any inside nested tuples of types, is one of eight."""
-    return any(
-        in_lanes(*kind.types) if isinstance(kind, types.BaseTuple) else _is(kind)
-        for kind in kinds
-    )
-
-
-def _is(kind: Any) -> bool:
-    return isinstance(kind, _Vector)
-
-
-def spread_type(kind: Any) -> Any:
-    """The type of a value spread over the lanes; whole numbers and arrays stay."""
-    if isinstance(kind, types.BaseTuple):
-        inner = [spread_type(each) for each in kind.types]
-        return types.BaseTuple.from_types(inner, getattr(kind, "instance_class", None))
-    if isinstance(kind, types.Boolean):
-        return FLAGS
-    return NUMBERS if isinstance(kind, types.Float) else kind
-
-
-def _equal_lanes(builder: Any, value: Any) -> Any:
-    """Eight times the same."""
-    vector = ir.VectorType(value.type, WIDTH)
-    nowhere = ir.Constant(vector, ir.Undefined)
-    first = builder.insert_element(nowhere, value, _PLACE(0))
-    zeros = ir.Constant(ir.VectorType(_PLACE, WIDTH), [0] * WIDTH)
-    return builder.shuffle_vector(first, nowhere, zeros)
-
-
-@_casts(types.Float, Lanes)
-@_casts(types.Integer, Lanes)
-def _number_to_lanes(context: Any, builder: Any, old: Any, new: Any, value: Any) -> Any:
-    number = context.cast(builder, value, types.unliteral(old), types.float64)
-    return _equal_lanes(builder, number)
-
-
-@_casts(types.Boolean, Mask)
-def _flag_to_mask(context: Any, builder: Any, old: Any, new: Any, value: Any) -> Any:
-    flag = value if value.type == _FLAG else builder.trunc(value, _FLAG)
-    return _equal_lanes(builder, flag)
-
-
-def _shared(args: Any, kind: Any) -> Any:
-    """The vector type that all arguments are of, or can become; None if there is none."""
-    found = any(isinstance(each, kind) for each in args)
-    fits = all(isinstance(each, (kind, *kind.plain)) for each in args)
-    return (NUMBERS if kind is Lanes else FLAGS) if found and fits else None
-
-
-def _bind(symbol: Any, kind: Any, result: Any, emit: Callable[..., Any]) -> None:
-    """Let an operator of Python work on vectors of a kind."""
-
-    def generic(self: Any, args: Any, kws: Any) -> Any:
-        shared = _shared(args, kind)
-        if shared is None:
-            return None
-        return templates.signature(result, *[shared] * len(args))
-
-    named = {"generic": generic, "key": symbol}
-    template = type("_Vectors", (templates.AbstractTemplate,), named)
-    templates.infer_global(symbol)(template)
-    operands = [kind] if symbol is operator.neg else [kind, kind]
-
-    def lower(context: Any, builder: Any, signature: Any, args: Any) -> Any:
-        return emit(context, builder, signature, args)
-
-    _lowers(symbol, *operands)(lower)
-
-
-def _instruction(name: str) -> Callable[..., Any]:
-    return lambda context, builder, kinds, args: getattr(builder, name)(*args)
-
-
-def _comparison(sign: str) -> Callable[..., Any]:
-    kind = "fcmp_unordered" if sign == "!=" else "fcmp_ordered"
-    return lambda context, builder, kinds, args: getattr(builder, kind)(sign, *args)
-
-
-for _name, _code in {"add": "fadd", "sub": "fsub", "mul": "fmul"}.items():
-    _bind(getattr(operator, _name), Lanes, NUMBERS, _instruction(_code))
-    _bind(getattr(operator, f"i{_name}"), Lanes, NUMBERS, _instruction(_code))
-_bind(operator.truediv, Lanes, NUMBERS, _instruction("fdiv"))
-_bind(operator.neg, Lanes, NUMBERS, _instruction("fneg"))
-for _name, _code in {"lt": "<", "le": "<=", "gt": ">", "ge": ">="}.items():
-    _bind(getattr(operator, _name), Lanes, FLAGS, _comparison(_code))
-_bind(operator.eq, Lanes, FLAGS, _comparison("=="))
-_bind(operator.ne, Lanes, FLAGS, _comparison("!="))
-for _name, _code in {"and_": "and_", "or_": "or_", "xor": "xor"}.items():
-    _bind(getattr(operator, _name), Mask, FLAGS, _instruction(_code))
-_bind(operator.ne, Mask, FLAGS, _instruction("xor"))
-_bind(operator.eq, Mask, FLAGS, lambda c, b, k, args: b.not_(b.xor(*args)))
-
-
-def _lane_by_lane(function: Callable[..., Any]) -> Callable[..., Any]:
-    """What emits a function of numbers, called for each lane by itself."""
-
-    def emit(context: Any, builder: Any, signature: Any, args: Any) -> Any:
-        found = ir.Constant(ir.VectorType(ir.DoubleType(), WIDTH), ir.Undefined)
-        plain = types.float64(*[types.float64] * len(args))
-        for lane in range(WIDTH):
-            own = [builder.extract_element(each, _PLACE(lane)) for each in args]
-            value = context.compile_internal(builder, function, plain, own)
-            found = builder.insert_element(found, value, _PLACE(lane))
-        return found
-
-    return emit
-
-
-_bind(operator.pow, Lanes, NUMBERS, _lane_by_lane(lambda base, power: base**power))
 
 
 def each(function: Callable[[float], float]) -> Any:  # Any: an intrinsic of Numba
     """A function of one number as one of eight."""
-    emit = _lane_by_lane(lambda x: function(x))
+    emit = lane_by_lane(lambda x: function(x))
 
     @intrinsic
     def apply(typing: Any, x: Any) -> Any:
@@ -286,7 +128,7 @@ def select(typing: Any, condition: Any, if_true: Any, if_false: Any) -> Any:
                     for k, each in enumerate(kind.types)
                 ]
                 return context.make_tuple(builder, kind, inner)
-            return builder.select(args[0], one, other) if _is(kind) else one
+            return builder.select(args[0], one, other) if is_vector(kind) else one
 
         both = zip((if_true, if_false), args[1:], strict=True)
         each = (_spread(context, builder, kind, whole, value) for kind, value in both)
@@ -356,7 +198,7 @@ def of_lane(typing: Any, value: Any, lane: Any) -> Any:
     whole = _plain_type(value)
 
     def emit(context: Any, builder: Any, signature: Any, args: Any) -> Any:
-        place = builder.trunc(args[1], _PLACE)
+        place = builder.trunc(args[1], PLACE)
 
         def taken(kind: Any, part: Any) -> Any:
             if isinstance(kind, types.BaseTuple):
@@ -365,7 +207,7 @@ def of_lane(typing: Any, value: Any, lane: Any) -> Any:
                     for k, each in enumerate(kind.types)
                 ]
                 return context.make_tuple(builder, _plain_type(kind), inner)
-            return builder.extract_element(part, place) if _is(kind) else part
+            return builder.extract_element(part, place) if is_vector(kind) else part
 
         return _counted(context, builder, whole, taken(value, args[0]))
 
@@ -380,16 +222,14 @@ def _row(context: Any, builder: Any, kind: Any, array: Any, index: Any) -> Any:
     return builder.bitcast(builder.gep(made.data, [first]), vector.as_pointer())
 
 
-def taken(
-    context: Any, builder: Any, kind: Any, array: Any, rows: Any, at: Any
-) -> Any:
+def taken(context: Any, builder: Any, kind: Any, array: Any, rows: Any, at: Any) -> Any:
     """Emit the reading of a row as a kind: numbers, flags or one whole number."""
     numbers = builder.load(_row(context, builder, array, rows, at), align=8)
     if isinstance(kind, types.Boolean):
         zeros = ir.Constant(numbers.type, [0.0] * WIDTH)
         return builder.fcmp_unordered("!=", numbers, zeros)
     if isinstance(kind, types.Integer):
-        first = builder.extract_element(numbers, _PLACE(0))
+        first = builder.extract_element(numbers, PLACE(0))
         return context.cast(builder, first, types.float64, kind)
     return numbers
 
@@ -413,9 +253,9 @@ def gathered(typing: Any, array: Any, index: Any) -> Any:
         places = builder.fptosi(args[1], ir.VectorType(ir.IntType(64), WIDTH))
         found = ir.Constant(ir.VectorType(ir.DoubleType(), WIDTH), ir.Undefined)
         for lane in range(WIDTH):
-            place = builder.extract_element(places, _PLACE(lane))
+            place = builder.extract_element(places, PLACE(lane))
             number = builder.load(builder.gep(made.data, [place]))
-            found = builder.insert_element(found, number, _PLACE(lane))
+            found = builder.insert_element(found, number, PLACE(lane))
         return found
 
     return NUMBERS(array, NUMBERS), emit
@@ -437,9 +277,9 @@ def store(typing: Any, array: Any, index: Any, value: Any) -> Any:
     return types.void(array, types.intp, value), emit
 
 
-@extending.overload(operator.setitem, strict=False)  # type: ignore[untyped-decorator]  # Numba has no types
+@extending.overload(operator.setitem, strict=False)
 def _set_row(array: Any, index: Any, value: Any) -> Any:
     """Rows of eight are filled as rows of numbers are."""
-    if isinstance(value, _Vector) and isinstance(index, types.Integer):
+    if is_vector(value) and isinstance(index, types.Integer):
         return lambda array, index, value: store(array, index, value)
     return None

@@ -68,7 +68,9 @@ def _converted(place: str, field: str, old: Any, new: Any) -> str:
         isinstance(old, types.Float) and isinstance(given, types.Float)
     ):
         return field
-    if lanes.in_lanes(old, given) and lanes.spread_type(old) == lanes.spread_type(given):
+    if lanes.in_lanes(old, given) and lanes.spread_type(old) == lanes.spread_type(
+        given
+    ):
         return field
     if isinstance(old, types.Float) and isinstance(
         given, types.Integer | types.Boolean

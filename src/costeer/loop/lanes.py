@@ -1,8 +1,8 @@
 """Eight trials at a time through the same steps (base/lanes.py).
 
 The trials of a block share road, sensors and time; each lane has its own driver, car,
-condition and random numbers. A lane whose trial has ended runs on until all have; what it
-does then is not kept. Each trial is bit for bit what it is alone.
+condition and random numbers. A lane whose trial has ended runs on until all have; what
+it does then is not kept. Each trial is bit for bit what it is alone.
 """
 
 from __future__ import annotations
@@ -18,6 +18,7 @@ from costeer.base import lanes
 from costeer.base.array import compiled
 from costeer.base.packing import unpack_lanes
 from costeer.drivers.interface import DriverNoise
+from costeer.intention.starts import BracketState
 from costeer.loop.endings import has_stopped, still
 from costeer.loop.events import has_collided
 from costeer.loop.parameters import LoopParameters
@@ -157,11 +158,12 @@ def run_block(
 
 def stacked(networks: Sequence[Network]) -> Network:
     """The networks of a block as one: memory with an axis of lanes first."""
-    memory = [
-        type(each[0])(*(np.stack(arrays) for arrays in zip(*each, strict=True)))
-        for each in (
-            [network.memory for network in networks],
-            [network.beyond for network in networks],
-        )
-    ]
-    return Network(networks[0].weights, *memory)
+
+    def together(memories: Sequence[BracketState]) -> BracketState:
+        return BracketState(*map(np.stack, zip(*memories, strict=True)))
+
+    return Network(
+        weights=networks[0].weights,
+        memory=together([network.memory for network in networks]),
+        beyond=together([network.beyond for network in networks]),
+    )

@@ -59,7 +59,7 @@ def _compiled_trial(
     usual = LoopParameters(usual_parameters(method), driver=hands)
     like = without(usual, bare)
     like_state = initial_state(rules_of(method, driver), usual)
-    like_state = _on_bare_road(like_state) if bare.fleet else like_state
+    like_state = on_bare_road(like_state) if bare.fleet else like_state
 
     def run_packed(
         parameters: Rows,
@@ -108,7 +108,7 @@ def begun(
         raise ValueError(f"engine '{engine}' is not known; choose numba, python or jax")
     bare = bare_of(parameters)
     numbers = packed(without(parameters, bare))
-    memory = packed(_on_bare_road(state) if bare.fleet else state)
+    memory = packed(on_bare_road(state) if bare.fleet else state)
     seat = law_of(driver), layout_of(parameters.driver), bare
     make = partial(_compiled_trial, driver=driver, hands=parameters.driver, bare=bare)
 
@@ -126,7 +126,7 @@ def begun(
     return advance
 
 
-def _on_bare_road(state: LoopState[S]) -> LoopState[S]:
+def on_bare_road(state: LoopState[S]) -> LoopState[S]:
     """A state in which there is no other car, and no room for one."""
     nothing: Any = None  # Any: as in `without`
     events = state.control.events._replace(fleet=nothing)

@@ -182,7 +182,9 @@ def network_verdict(
     road: RoadParameters, network: Network, measurement: Measurement
 ) -> Verdict:
     """What the network says: asked for each side where there may be lanes on both."""
-    usual = probability_of(network.weights, network.memory, intention_sample(measurement))
+    usual = probability_of(
+        network.weights, network.memory, intention_sample(measurement)
+    )
     if road.num_lanes <= 2.0:
         return Verdict(usual, measurement.side)
     turned = facing_beyond(road, measurement)

@@ -74,8 +74,28 @@ def simulate_trial(setup: TrialSetup, engine: str = "numba") -> TrialRecord:
         ModuleNotFoundError: If the engine is not installed.
     """
     parameters, predictor = loop_parameters(setup), trial_predictor(setup)
-    method = trial_method(setup)
     rows = _driven(setup, parameters, predictor, engine)
+    return record_of(setup, parameters, predictor, rows)
+
+
+def record_of(
+    setup: TrialSetup,
+    parameters: LoopParameters[Any],
+    predictor: ChosenPredictor | None,
+    rows: NDArray[np.float64],
+) -> TrialRecord:
+    """The record of a trial that was run.
+
+    Args:
+        setup: Of the trial.
+        parameters: Of the trial.
+        predictor: That was asked.
+        rows: Of the loop, shape `(time, column)`.
+
+    Raises:
+        ValueError: If the car has left the numbers.
+    """
+    method = trial_method(setup)
     _refuse_broken(setup, rows)
     added = (*method.columns, *car_columns(num_cars(parameters.fleet)))
     columns = record_columns(rows, is_assisted(setup), with_method_columns(added))
@@ -98,12 +118,26 @@ def _driven(
     """
     alone = not num_cars(parameters.fleet) and engine != "jax"
     for share in (LIKELY_SHARE, SLOWEST_SHARE) if alone else (SLOWEST_SHARE,):
-        steps = int(np.ceil(setup.length / (share * setup.speed) / DT))
+        steps = steps_of(setup, share)
         noise = driver_noise(setup.seed, setup.participant, setup.condition, steps)
         rows = _run(setup, parameters, predictor, noise, engine)
         if len(rows) < steps:
             break
     return rows
+
+
+def steps_of(setup: TrialSetup, share: Real) -> int:
+    """Control steps until a car at this share of its speed arrives [-]."""
+    return int(np.ceil(setup.length / (share * setup.speed) / DT))
+
+
+def trial_script(setup: TrialSetup) -> Script:
+    """Where the crossing probability of a trial comes from."""
+    return Script(
+        intention=INTENTIONS[setup.intention],
+        horizon=setup.prediction_horizon,
+        trigger_times=np.array(sorted(setup.trigger_times), dtype=np.float64),
+    )
 
 
 def _run(
@@ -114,11 +148,7 @@ def _run(
     engine: str,
 ) -> NDArray[np.float64]:
     """Rows of a trial, until it ends or its random numbers do."""
-    script = Script(
-        intention=INTENTIONS[setup.intention],
-        horizon=setup.prediction_horizon,
-        trigger_times=np.array(sorted(setup.trigger_times), dtype=np.float64),
-    )
+    script = trial_script(setup)
     method, driver = trial_method(setup), trial_driver_model(setup)
     network = trial_network(setup, parameters, predictor)
     if predictor is None or predictor.judge is None or engine == "jax":

@@ -18,6 +18,7 @@ from costeer.loop.trial import simulate_trial
 from costeer.scale.cluster import workers
 from costeer.scale.jobs import JobsStoppedError, Pool, run_jobs
 from costeer.scale.shard import WHOLE, Shard, part
+from costeer.study.batches import Work, named
 from costeer.study.configuration import (
     PUBLISHED_STUDY,
     StudySettings,
@@ -40,6 +41,7 @@ from costeer.study.trial_tables import FailedRow, write_trial_tables
 from costeer.study.trials import (
     Simulate,
     TrialDone,
+    finish_together,
     finish_trial,
     keep_result,
     kept_trial,
@@ -146,9 +148,9 @@ def run_study(
     with workers(jobs, scale.cluster) as pool:
         try_plug_ins(driven, simulate)
         with opened_study(Path(out), configuration, command, scale.shard) as folder:
-            work = partial(
-                finish_trial, folder, driven, simulate, records=scale.records
-            )
+            one = partial(finish_trial, folder, driven, simulate, records=scale.records)
+            several = partial(finish_together, folder, driven, records=scale.records)
+            work = Work(one, several if simulate is simulate_trial else None)
             done = _finished(folder, work, pool, progress, scale)
             if scale.shard.total == 1:
                 remove_leftovers(folder.path)  # of workers that were killed
@@ -169,7 +171,7 @@ def outcome_of(path: Path, done: Sequence[TrialDone]) -> StudyOutcome:
 
 def _finished(
     folder: StudyFolder,
-    work: Callable[[Trial], TrialDone],
+    work: Work,
     pool: Pool,
     progress: Callable[[TrialDone], None],
     scale: Scale,
@@ -298,33 +300,43 @@ def settings_in(folder: StudyFolder) -> StudySettings:
 
 def _all_done(
     folder: StudyFolder,
-    work: Callable[[Trial], TrialDone],
+    work: Work,
     trials: Sequence[Trial],
     pool: Pool,
     progress: Callable[[TrialDone], None],
     num_there: int,
 ) -> list[TrialDone]:
-    def keep(_: Trial, done: TrialDone) -> TrialDone:
-        return keep_result(folder, done)
+    batches = work.batches(trials)
+    num_done: list[int] = []
+
+    def keep(_: Sequence[Trial], done: list[TrialDone]) -> list[TrialDone]:
+        kept = [keep_result(folder, each) for each in done]
+        num_done.append(len(kept))
+        return kept
+
+    def tell(done: list[TrialDone]) -> None:
+        for each in done:
+            progress(each)
 
     try:
-        return run_jobs(work, trials, pool, progress, keep)
+        done = run_jobs(work.done, batches, pool, tell, keep)
     except JobsStoppedError as stop:
-        failed = None if stop.failed is None else trials[stop.failed]
+        failed = None if stop.failed is None else batches[stop.failed]
         kept = (
-            f"{num_there + stop.num_done} of {num_there + len(trials)} trials are done "
+            f"{num_there + sum(num_done)} of {num_there + len(trials)} trials are done "
             f"and kept in {folder.path}; run the same command again to go on from there"
         )
         raise _explained(stop.__cause__, failed, kept) from stop.__cause__
+    return [each for batch in done for each in batch]
 
 
 def _explained(
-    cause: BaseException | None, failed: Trial | None, kept: str
+    cause: BaseException | None, failed: Sequence[Trial] | None, kept: str
 ) -> BaseException:
     """Return the error to raise: what went wrong, what is kept, how to go on."""
     if isinstance(cause, KeyboardInterrupt):
         return StudyInterrupted(kept)
-    where = f"participant {failed.participant}, {failed.condition}: " if failed else ""
+    where = named(failed) if failed else ""
     if isinstance(cause, OSError):
         space = "free some space; " if cause.errno in _FULL else ""
         return OSError(f"{where}{_reason(cause)}; {space}{kept}")

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from typing import Any, NamedTuple
 
 from costeer.intention.predictors.registry import PREDICTORS
 from costeer.loop.scenario import TrialSetup
+from costeer.loop.together import simulate_together
 from costeer.methods.conditions import CONDITION_NAMES, MANUAL
 from costeer.methods.registry import METHODS
 from costeer.records.record import TrialRecord, read_record, write_record
@@ -114,6 +116,51 @@ def finish_trial(
     there = resumed_trial(folder, trial)
     if there is not None:
         return there
+    return _driven(folder, settings, simulate, trial, records)
+
+
+def finish_together(
+    folder: StudyFolder,
+    settings: StudySettings,
+    trials: Sequence[Trial],
+    records: bool = True,
+) -> list[TrialDone]:
+    """`finish_trial` of several trials, which are driven together where they fit.
+
+    Args:
+        folder: Of the study.
+        settings: Of the study.
+        trials: Which ones.
+        records: Whether their records are kept.
+
+    Raises:
+        OSError: As `finish_trial`.
+        OtherCodeError: As `finish_trial`.
+    """
+    found = {trial: resumed_trial(folder, trial) for trial in trials}
+    missing = [trial for trial, there in found.items() if there is None]
+    made = simulate_together([trial_setup(settings, trial) for trial in missing])
+    for trial, outcome in zip(missing, made, strict=True):
+        given = partial(_given, outcome)
+        found[trial] = _driven(folder, settings, given, trial, records)
+    return [done for done in found.values() if done is not None]
+
+
+def _given(outcome: TrialRecord | Exception, _: TrialSetup) -> TrialRecord:
+    """What became of a trial: its record, or the error is raised."""
+    if isinstance(outcome, Exception):
+        raise outcome
+    return outcome
+
+
+def _driven(
+    folder: StudyFolder,
+    settings: StudySettings,
+    simulate: Simulate,
+    trial: Trial,
+    records: bool,
+) -> TrialDone:
+    """Drive and measure a trial, see `finish_trial`."""
     try:
         made = simulate(trial_setup(settings, trial))
         _check_code(folder, made)
