@@ -165,7 +165,8 @@ def _comparison(sign: str) -> Callable[..., Any]:
 for _name, _code in {"add": "fadd", "sub": "fsub", "mul": "fmul"}.items():
     _bind(getattr(operator, _name), Lanes, NUMBERS, _instruction(_code))
     _bind(getattr(operator, f"i{_name}"), Lanes, NUMBERS, _instruction(_code))
-_bind(operator.truediv, Lanes, NUMBERS, _instruction("fdiv"))
+for _quotient in (operator.truediv, operator.itruediv):
+    _bind(_quotient, Lanes, NUMBERS, _instruction("fdiv"))
 _bind(operator.neg, Lanes, NUMBERS, _instruction("fneg"))
 for _name, _code in {"lt": "<", "le": "<=", "gt": ">", "ge": ">="}.items():
     _bind(getattr(operator, _name), Lanes, FLAGS, _comparison(_code))

@@ -78,8 +78,8 @@ def _total_compiled(values: Any) -> Any:
     if values.ndim == 2:
 
         def together(values: Any) -> Any:
-            total = lanes.load(values, 0)
-            for index in range(1, values.shape[1]):
+            total = lanes.spread(0.0)
+            for index in range(values.shape[1]):
                 total = total + lanes.load(values, index)
             return total
 
