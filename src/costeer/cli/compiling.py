@@ -8,7 +8,7 @@ import time
 from costeer.base import notice
 from costeer.cli.console import note
 
-USUAL = 60
+USUAL = 35
 """How long the whole loop takes on a quiet computer, about [s]."""
 
 _PATIENCE = 1.0
