@@ -4,6 +4,7 @@ On roads with more than two lanes the network is asked for both sides; crossings
 one that is not the usual, that of overtaking, are counted apart too.
 
     python -m benchmarks.intention_scenarios --drivers 20
+    python -m benchmarks.intention_scenarios --scenarios expressway-curves --seed 8
 """
 
 from __future__ import annotations
@@ -29,13 +30,28 @@ from costeer.study.measures import prepared
 from costeer.study.segments import LaneChange
 from costeer.study.trial_measures import Trial as MeasuredTrial
 
-SCENARIOS = ("expressway", "dense-traffic", "three-lanes")
+SCENARIOS = ("expressway", "dense-traffic", "three-lanes", "expressway-curves")
 CONDITIONS = ("manual", "strong-normal")
 SEED = 5
 """Of drivers that were neither trained on nor judged elsewhere."""
 
-Trial = tuple[str, str, int]
-"""Scenario, condition and number of the driver."""
+
+
+class Trial(NamedTuple):
+    """A drive.
+
+    Attributes:
+        scenario: Its name.
+        condition: Of the study.
+        participant: Number of the driver.
+        seed: Of the drivers.
+    """
+
+    scenario: str
+    condition: str
+    participant: int
+    seed: int = SEED
+
 
 
 class Found(NamedTuple):
@@ -62,14 +78,13 @@ class Found(NamedTuple):
 
 def driven(trial: Trial) -> TrialRecord:
     """The record of one trial of 8 km, at the scenario's own speed."""
-    scenario, condition, participant = trial
     return simulate_trial(
         TrialSetup(
-            participant=participant,
-            seed=SEED,
-            condition=condition,
-            scenario=scenario,
-            speed=speed_of(scenario_named(scenario).speed),
+            participant=trial.participant,
+            seed=trial.seed,
+            condition=trial.condition,
+            scenario=trial.scenario,
+            speed=speed_of(scenario_named(trial.scenario).speed),
         )
     )
 

@@ -18,7 +18,7 @@ from costeer.base.packing import unpack
 from costeer.controller.signals import Request
 from costeer.drivers.interface import DriverNoise
 from costeer.intention.bracket import advance
-from costeer.intention.features import IntentionSample, facing
+from costeer.intention.features import IntentionSample, beyond_bend, facing
 from costeer.intention.starts import BracketState, BracketWeights
 from costeer.loop.endings import has_stopped, still
 from costeer.loop.events import has_collided
@@ -34,8 +34,9 @@ from costeer.loop.step import (
     sense,
     step,
 )
+from costeer.plant.alignment import line_curvature
 from costeer.plant.fleet import num_cars, write_cars
-from costeer.plant.parameters import RoadParameters
+from costeer.plant.parameters import CarParameters, RoadParameters
 from costeer.plant.road import lane_exists
 from costeer.sensing.measurement import Measurement, facing_beyond
 
@@ -124,10 +125,11 @@ def likelier(
 
 
 @compiled
-def intention_sample(measurement: Measurement) -> IntentionSample:
+def intention_sample(car: CarParameters, measurement: Measurement) -> IntentionSample:
     """Eq. (1): the six signals, mirrored so that the adjacent lane is on the right.
 
-    Of a head that the tracker has lost the network is told so.
+    What the road's bend asks for is taken off. Of a head that the tracker has lost the
+    network is told so.
     """
     seen = xp.select(measurement.head_yaw_valid, measurement.head_yaw, math.nan)
     sample = IntentionSample(
@@ -138,19 +140,25 @@ def intention_sample(measurement: Measurement) -> IntentionSample:
         distance_to_adjacent_lane=measurement.distance_to_adjacent_lane,
         yaw_angle=measurement.yaw_angle,
     )
-    return facing(sample, measurement.side)
+    bend = line_curvature(measurement.road_curvature, measurement.lateral_position)
+    return facing(beyond_bend(car, sample, bend), measurement.side)
 
 
 @compiled
 def network_verdict(
-    road: RoadParameters, network: Network, measurement: Measurement
+    car: CarParameters,
+    road: RoadParameters,
+    network: Network,
+    measurement: Measurement,
 ) -> Verdict:
     """What the network says: asked for each side where there may be lanes on both."""
-    usual = advance(network.weights, network.memory, intention_sample(measurement))
+    sample = intention_sample(car, measurement)
+    usual = advance(network.weights, network.memory, sample)
     if road.num_lanes <= 2.0:
         return Verdict(usual, measurement.side)
     turned = facing_beyond(road, measurement)
-    other = advance(network.weights, network.beyond, intention_sample(turned))
+    beyond = intention_sample(car, turned)
+    other = advance(network.weights, network.beyond, beyond)
     return likelier(road, measurement.lane, measurement.side, usual, other)
 
 
@@ -196,7 +204,7 @@ def tick(
         crosses = scripted_probability(parameters, state, script.horizon)
         verdict = Verdict(crosses, state.plan.side)
     if script.intention == INTENTION_NETWORK:
-        verdict = network_verdict(parameters.road, network, measurement)
+        verdict = network_verdict(parameters.car, parameters.road, network, measurement)
     if script.intention == INTENTION_GIVEN:
         verdict = Verdict(script.probability, script.side)
     request = Request(
