@@ -1,9 +1,11 @@
-"""How the shipped network does in scenarios that it was not trained on.
+r"""How the shipped network does in scenarios that it was not trained on.
 
 On roads with more than two lanes the network is asked for both sides; crossings to the
 one that is not the usual, that of overtaking, are counted apart too.
 
     python -m benchmarks.intention_scenarios --drivers 20
+    python -m benchmarks.intention_scenarios --drivers 40 --seed 8 \
+        --scenarios expressway,expressway-curves
 """
 
 from __future__ import annotations
@@ -28,14 +30,28 @@ from costeer.study.lanes import adjacent_side
 from costeer.study.measures import prepared
 from costeer.study.segments import LaneChange
 from costeer.study.trial_measures import Trial as MeasuredTrial
+from costeer.training.bootstrap import resamplings
 
-SCENARIOS = ("expressway", "dense-traffic", "three-lanes")
+SCENARIOS = ("expressway", "dense-traffic", "three-lanes", "expressway-curves")
 CONDITIONS = ("manual", "strong-normal")
 SEED = 5
 """Of drivers that were neither trained on nor judged elsewhere."""
 
-Trial = tuple[str, str, int]
-"""Scenario, condition and number of the driver."""
+
+class Trial(NamedTuple):
+    """A drive.
+
+    Attributes:
+        scenario: Its name.
+        condition: Of the study.
+        participant: Number of the driver.
+        seed: Of the drivers.
+    """
+
+    scenario: str
+    condition: str
+    participant: int
+    seed: int = SEED
 
 
 class Found(NamedTuple):
@@ -62,14 +78,13 @@ class Found(NamedTuple):
 
 def driven(trial: Trial) -> TrialRecord:
     """The record of one trial of 8 km, at the scenario's own speed."""
-    scenario, condition, participant = trial
     return simulate_trial(
         TrialSetup(
-            participant=participant,
-            seed=SEED,
-            condition=condition,
-            scenario=scenario,
-            speed=speed_of(scenario_named(scenario).speed),
+            participant=trial.participant,
+            seed=trial.seed,
+            condition=trial.condition,
+            scenario=trial.scenario,
+            speed=speed_of(scenario_named(trial.scenario).speed),
         )
     )
 
@@ -144,12 +159,28 @@ HEAD = (
 )
 
 
+def interval(parts: Sequence[Found]) -> tuple[float, float]:
+    """False triggers per km, 95 % of a bootstrap over the drivers [1/km]."""
+    times = resamplings(len(parts), 1000, 1)
+    false = times @ np.array([each.num_false for each in parts])
+    driven = times @ np.array([each.kilometres for each in parts])
+    low, high = np.percentile(false / driven, [2.5, 97.5])
+    return float(low), float(high)
+
+
 def _median(values: Sequence[float] | NDArray[np.float64], unit: str) -> str:
     return f"{np.median(values):.2f} {unit}" if len(values) else "–"
 
 
-def row(scenario: str, condition: str, found: Found) -> str:
-    """A row of the table; leads are of announced crossings, values are medians."""
+def row(scenario: str, condition: str, parts: Sequence[Found]) -> str:
+    """A row of the table; leads are of announced crossings, values are medians.
+
+    Args:
+        scenario: Its name.
+        condition: Of the study.
+        parts: Of each driver.
+    """
+    found, (low, high) = total(parts), interval(parts)
     away, every = np.array(found.away), np.array([*found.facing, *found.away])
     missed = int((every == 0.0).sum())
     cells = (
@@ -159,7 +190,7 @@ def row(scenario: str, condition: str, found: Found) -> str:
         f"{missed} ({missed / every.size:.0%})",
         f"{int((away == 0.0).sum())} of {away.size}",
         _median(every[every > 0.0], "s"),
-        f"{found.num_false / found.kilometres:.3f} ({found.num_false})",
+        f"{found.num_false / found.kilometres:.3f} ({low:.3f} to {high:.3f})",
         _median(found.facing_torque, "N·m"),
         _median(found.away_torque, "N·m"),
         f"{found.num_collisions}",
@@ -172,14 +203,16 @@ def main(arguments: Sequence[str] | None = None) -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--drivers", type=int, default=20)
     parser.add_argument("--jobs", type=int, default=1)
+    parser.add_argument("--seed", type=int, default=SEED)
+    parser.add_argument("--scenarios", default=",".join(SCENARIOS))
     given = parser.parse_args(arguments)
-    groups = list(product(SCENARIOS, CONDITIONS))
+    groups = list(product(given.scenarios.split(","), CONDITIONS))
     people = range(1, given.drivers + 1)
     print(HEAD)
     with ProcessPoolExecutor(given.jobs) as pool:
         for scenario, condition in groups:
-            trials = [(scenario, condition, number) for number in people]
-            found = total(list(pool.map(judged_trial, trials)))
+            trials = [Trial(scenario, condition, n, given.seed) for n in people]
+            found = list(pool.map(judged_trial, trials))
             print(row(scenario, condition, found), flush=True)
 
 

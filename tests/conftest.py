@@ -178,10 +178,10 @@ def undrawn(monkeypatch: pytest.MonkeyPatch) -> None:
 def compiled_drive() -> None:
     """Machine code of a drive on the disk, for the processes that a test starts."""
     from costeer.intention.predictors.chosen import chosen_predictor
-    from costeer.plant.parameters import RoadParameters
+    from costeer.plant.parameters import CarParameters, RoadParameters
     from costeer.runtime.verdicts import Reader
     from tests.runtime.rig import Rig, drive_setup, wheel_setup
 
     for setup in (drive_setup(), wheel_setup()):
         Rig(setup).close()
-    Reader(RoadParameters(), (), chosen_predictor()).warm_up()
+    Reader(CarParameters(), RoadParameters(), (), chosen_predictor()).warm_up()

@@ -20,6 +20,8 @@ from costeer.intention.features import (
     adjacent_side,
     approach_series,
     approach_velocity,
+    beyond_bend,
+    curvature_series,
     facing,
     feature_series,
     full_windows,
@@ -29,6 +31,10 @@ from costeer.intention.features import (
     scaled,
     valid_samples,
 )
+from costeer.plant.parameters import CARS, DEFAULT_CAR, CarParameters
+
+BENDS = st.floats(-1.0 / 300.0, 1.0 / 300.0)
+SPEEDS = st.floats(10.0, 40.0)
 
 SAMPLE = IntentionSample(
     head_yaw=0.5,
@@ -175,3 +181,98 @@ def test_what_is_hidden_is_hidden_in_a_copy() -> None:
 def test_no_variant_lacks_the_velocity_and_the_first_lacks_nothing() -> None:
     assert all("longitudinal_velocity" not in absent for absent in VARIANTS.values())
     assert next(iter(VARIANTS.values())) == ()
+
+
+def on_circle(car: CarParameters, speed: float, curvature: float) -> IntentionSample:
+    """A car that drives along a circle, from the force that each axle has to give.
+
+    The lateral forces m v² kappa b / L in front and m v² kappa a / L behind need slip
+    angles; the wheel points where the front axle goes and by its slip angle further,
+    and the car out of its own way by what the rear axle's radius and slip ask for.
+    """
+    length = car.front_distance + car.rear_distance
+    force = car.mass * speed**2 * curvature / length
+    front_slip = force * car.rear_distance / car.front_cornering_stiffness
+    rear_slip = force * car.front_distance / car.rear_cornering_stiffness
+    sideslip = car.rear_distance * curvature - rear_slip
+    front_way = sideslip + car.front_distance * curvature
+    return SAMPLE._replace(
+        longitudinal_velocity=speed,
+        steering_wheel_angle=car.steering_ratio * (front_way + front_slip),
+        yaw_angle=-sideslip,
+    )
+
+
+@pytest.mark.parametrize("car", CARS.values(), ids=CARS)
+@given(speed=SPEEDS, curvature=BENDS)
+def test_a_circle_looks_as_a_straight_road(
+    car: CarParameters, speed: float, curvature: float
+) -> None:
+    seen = beyond_bend(car, on_circle(car, speed, curvature), curvature)
+    straight = on_circle(car, speed, 0.0)
+    # Angles of at most 3 rad from some ten roundings.
+    assert seen == pytest.approx(straight, rel=0.0, abs=1e-14)
+
+
+@given(speed=SPEEDS, curvature=BENDS, angle=st.floats(-0.3, 0.3))
+def test_what_is_steered_more_than_the_bend_asks_is_seen_whole(
+    speed: float, curvature: float, angle: float
+) -> None:
+    circle = on_circle(DEFAULT_CAR, speed, curvature)
+    more = circle._replace(
+        steering_wheel_angle=circle.steering_wheel_angle + angle,
+        yaw_angle=circle.yaw_angle + angle / 10.0,
+    )
+    seen = beyond_bend(DEFAULT_CAR, more, curvature)
+    assert seen.steering_wheel_angle == pytest.approx(angle, abs=1e-14)
+    assert seen.yaw_angle == pytest.approx(angle / 10.0, abs=1e-14)
+
+
+@given(speed=SPEEDS, angle=st.floats(-3.0, 3.0), yaw=st.floats(-0.2, 0.2))
+def test_on_a_straight_road_nothing_is_taken_off(
+    speed: float, angle: float, yaw: float
+) -> None:
+    sample = SAMPLE._replace(
+        longitudinal_velocity=speed, steering_wheel_angle=angle, yaw_angle=yaw
+    )
+    assert beyond_bend(DEFAULT_CAR, sample, 0.0) == sample
+
+
+@given(speed=SPEEDS, curvature=BENDS, side=st.sampled_from([-1.0, 1.0]))
+def test_a_bend_in_the_mirror_looks_the_same(
+    speed: float, curvature: float, side: float
+) -> None:
+    sample = SAMPLE._replace(longitudinal_velocity=speed)
+    mirror = sample._replace(head_yaw=-0.5, steering_wheel_angle=-0.1, yaw_angle=-0.02)
+    here = facing(beyond_bend(DEFAULT_CAR, sample, curvature), side)
+    there = facing(beyond_bend(DEFAULT_CAR, mirror, -curvature), -side)
+    assert here == there
+
+
+def test_a_series_in_bends_equals_its_samples() -> None:
+    rng = np.random.default_rng(0)
+    rows, side = rng.normal(size=(20, 6)), np.ones(20, np.int8)
+    columns = dict(zip(FEATURES, rows.T, strict=True))
+    columns["road_curvature"] = rng.uniform(-0.002, 0.002, 20)
+    columns["lateral_position"] = rng.uniform(-3.5, 0.0, 20)
+    car = CARS["compact"]
+    places = zip(columns["road_curvature"], columns["lateral_position"], strict=True)
+    for row, (bend, place), seen in zip(
+        rows, places, feature_series(columns, side, car), strict=True
+    ):
+        # A line beside the reference line has its radius less the distance.
+        line = 1.0 / (1.0 / bend - place)
+        one = beyond_bend(car, IntentionSample(*row), line)
+        assert seen == pytest.approx(tuple(facing(one, 1.0)), rel=1e-12)
+
+
+def test_where_the_road_is_not_known_nothing_is_taken_off() -> None:
+    rows = np.random.default_rng(0).normal(size=(4, 6))
+    named, side = dict(zip(FEATURES, rows.T, strict=True)), np.full(4, -1, np.int8)
+    np.testing.assert_array_equal(feature_series(named, side), rows)
+    partly = np.ma.array([0.001, np.nan, 0.001, 0.0], mask=[0, 0, 1, 0])
+    known = np.array([True, False, False, False])
+    seen = feature_series(named | {"road_curvature": partly}, side)
+    np.testing.assert_array_equal((seen != rows).any(axis=1), known)
+    bends = curvature_series({"road_curvature": partly})
+    np.testing.assert_array_equal(bends, [0.001, 0.0, 0.0, 0.0])

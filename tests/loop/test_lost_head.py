@@ -25,6 +25,7 @@ from costeer.intention.weights import intention_network, save_weights
 from costeer.loop.scenario import TrialSetup
 from costeer.loop.tick import intention_sample
 from costeer.loop.trial import simulate_trial
+from costeer.plant.parameters import CarParameters
 from costeer.sensing.measurement import Measurement
 from tests.drivers.samples import LEFT, RIGHT, driving
 
@@ -46,8 +47,8 @@ def turned(lane: float, tracked: bool) -> Measurement:
 
 @pytest.mark.parametrize(("lane", "turn"), [(LEFT, 1.0), (RIGHT, -1.0)])
 def test_a_lost_head_is_no_number_to_the_network(lane: float, turn: float) -> None:
-    seen = intention_sample(turned(lane, tracked=True))
-    lost = intention_sample(turned(lane, tracked=False))
+    seen = intention_sample(CarParameters(), turned(lane, tracked=True))
+    lost = intention_sample(CarParameters(), turned(lane, tracked=False))
     assert seen.head_yaw == -0.3 * turn
     assert math.isnan(lost.head_yaw)
     assert lost._replace(head_yaw=seen.head_yaw) == seen

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from costeer.intention.predictors.chosen import chosen_predictor
 from costeer.loop.scenario import TrialSetup
 from costeer.loop.trial import simulate_trial
-from costeer.plant.parameters import RoadParameters
+from costeer.plant.parameters import CARS, CarParameters, RoadParameters
 from costeer.records.row import ROW_COLUMNS
 from costeer.runtime.frame import FRAME_COLUMNS, PLACE
 from costeer.runtime.verdicts import Reader
@@ -32,13 +32,27 @@ def record() -> dict[str, NDArray[np.float64]]:
     return simulate_trial(SETUP._replace(exact_network=True)).columns
 
 
+def check_frames(car: str, drove: dict[str, NDArray[np.float64]]) -> None:
+    """Read the frames of a drive and hold the verdicts against those of the trial."""
+    reader = Reader(CARS[car], RoadParameters(), (), chosen_predictor())
+    probabilities, sides = zip(*map(reader.read, frames_of(drove)), strict=True)
+    np.testing.assert_array_equal(probabilities, drove["crossing_probability"])
+    np.testing.assert_array_equal(sides, drove["crossing_side"])
+
+
+def test_verdicts_in_bends_are_those_of_the_trial() -> None:
+    setup = SETUP._replace(
+        exact_network=True, car="compact", scenario="expressway-curves", length=900.0
+    )
+    drove = simulate_trial(setup).columns
+    assert drove["road_curvature"].any()
+    check_frames("compact", drove)
+
+
 def test_verdicts_over_frames_are_those_of_the_trial(
     record: dict[str, NDArray[np.float64]],
 ) -> None:
-    reader = Reader(RoadParameters(), (), chosen_predictor())
-    probabilities, sides = zip(*map(reader.read, frames_of(record)), strict=True)
-    np.testing.assert_array_equal(probabilities, record["crossing_probability"])
-    np.testing.assert_array_equal(sides, record["crossing_side"])
+    check_frames("default", record)
     assert (record["lane"] == 0).any()  # both sides were part of it
     assert not record["head_yaw_valid"].all()  # and a lost head
 
@@ -47,7 +61,7 @@ def test_gap_and_restart_begin_a_new_window(
     record: dict[str, NDArray[np.float64]],
 ) -> None:
     frames = frames_of(record)[:400]
-    reader = Reader(RoadParameters(), (), chosen_predictor())
+    reader = Reader(CarParameters(), RoadParameters(), (), chosen_predictor())
     for frame in frames[:200]:
         before = reader.read(frame).probability
     after_gap = [reader.read(frame).probability for frame in frames[205:390]]
@@ -66,6 +80,7 @@ def test_drive_without_a_tracker_is_judged_by_motion_alone(
     turned = frames.copy()
     turned[:, PLACE["head_yaw"]] = 0.9
     there, here = (
-        Reader(RoadParameters(), ("head_yaw",), chosen_predictor()) for _ in range(2)
+        Reader(CarParameters(), RoadParameters(), ("head_yaw",), chosen_predictor())
+        for _ in range(2)
     )
     assert [here.read(f) for f in frames][-1] == [there.read(f) for f in turned][-1]

@@ -11,6 +11,7 @@ import pandas as pd
 import pytest
 
 from costeer.intention.features import FEATURES
+from costeer.plant.parameters import CARS
 from costeer.records.record import TrialRecord
 from costeer.training.recordings import read_recordings, recording, recordings_of
 from tests.training.synthetic import columns, drive
@@ -184,3 +185,24 @@ def test_a_record_of_three_lanes_says_to_which_side_it_was_measured() -> None:
     about["configuration"] = {"road": road | {"overtaking_side": 1.0}}
     (turned,) = recordings_of(TrialRecord(about, drive_on_three), "a")
     assert [int(turned.side[rows == third][0]) for third in (0, 1, 2)] == [-1, 1, 1]
+
+
+ANGLE = FEATURES.index("steering_wheel_angle")
+
+
+def test_a_record_in_bends_is_judged_by_the_car_that_was_driven() -> None:
+    bend = np.full(len(columns(1)["time"]), 0.002)
+    along = changed(road_curvature=bend)
+    straight = recording("a", "a", columns(1))
+    for car in ("default", "large"):
+        about = {"seed": 1, "participant": 1, "car": car}
+        (made,) = recordings_of(TrialRecord(about, along), "a")
+        taken = -straight.side * (straight.features - made.features)[:, ANGLE]
+        model, speed = CARS[car], along["longitudinal_velocity"]
+        # By the slip angles of the axles: m a kappa v² / (L C), not by K_us.
+        length = model.front_distance + model.rear_distance
+        push = model.mass * 0.002 * speed**2 / length
+        front = push * model.rear_distance / model.front_cornering_stiffness
+        rear = push * model.front_distance / model.rear_cornering_stiffness
+        asked = model.steering_ratio * (length * 0.002 + front - rear)
+        np.testing.assert_allclose(taken, asked, rtol=1e-9)

@@ -1,5 +1,9 @@
 """What the network sees of car and driver: the six signals of Eq. (1).
 
+The network is trained on straight roads. In a bend it is shown what would be left of
+the signals there: what steady cornering asks of wheel and heading is taken off
+(`beyond_bend`). On a straight road nothing is.
+
 The network is trained for the adjacent lane on the right. Whenever the adjacent lane
 is on the left it is shown the mirrored world: head yaw, steering-wheel angle and yaw
 angle change sign; speed, acceleration and the distance to the shared boundary do not.
@@ -21,6 +25,13 @@ from numpy.typing import NDArray
 
 from costeer.base import array as xp
 from costeer.base.array import Real, compiled
+from costeer.plant.alignment import line_curvature
+from costeer.plant.parameters import (
+    DEFAULT_CAR,
+    CarParameters,
+    steady_sideslip_angle,
+    steady_steering_wheel_angle,
+)
 from costeer.records.columns import COLUMNS_BY_NAME
 
 WINDOW_LENGTH = 180
@@ -98,6 +109,31 @@ NUM_INPUTS = len(INPUTS)
 _VELOCITY = FEATURES.index("longitudinal_velocity")
 _YAW = FEATURES.index("yaw_angle")
 _MIRRORED = [n for n in FEATURES if COLUMNS_BY_NAME[n].mirrored == "flipped"]
+
+
+@compiled
+def beyond_bend(
+    car: CarParameters, sample: IntentionSample, curvature: Real
+) -> IntentionSample:
+    """The sample less what steady cornering along the road asks for.
+
+    The wheel is held at steering_ratio (wheelbase + K_us v²) kappa, and the car points
+    out of its direction of travel by its sideslip angle. Source: steady cornering of
+    the linear single-track car, as for theta_d and psi_d of the planned motion
+    (controller/preview.py); ours, the paper's road is straight.
+
+    Args:
+        car: With linear tyres.
+        sample: In the car's own signs.
+        curvature: Of the line along the road that the car is on, left positive [1/m].
+    """
+    speed = sample.longitudinal_velocity
+    angle = steady_steering_wheel_angle(car, speed, curvature)
+    sideslip = steady_sideslip_angle(car, speed, curvature)
+    return sample._replace(
+        steering_wheel_angle=sample.steering_wheel_angle - angle,
+        yaw_angle=sample.yaw_angle + sideslip,
+    )
 
 
 @compiled
@@ -181,24 +217,45 @@ def full_windows(
 
 
 def feature_series(
-    columns: Mapping[str, NDArray[np.float64]], side: NDArray[np.int8]
+    columns: Mapping[str, NDArray[np.float64]],
+    side: NDArray[np.int8],
+    car: CarParameters = DEFAULT_CAR,
 ) -> NDArray[np.float64]:
     """Signals of Eq. (1) as the network takes them, before scaling.
 
     Args:
-        columns: The arrays of `FEATURES`, shape `(time,)` each.
+        columns: The arrays of `FEATURES`, shape `(time,)` each, and `road_curvature`
+            with `lateral_position` where they are known.
         side: Side of the adjacent lane at each sample, -1 or +1, shape `(time,)`.
+        car: That was driven; matters in bends alone.
 
     Returns:
-        Mirrored where the side is left, shape `(time, feature)`.
+        Less what the road's bends ask for, mirrored where the side is left, shape
+        `(time, feature)`.
     """
-    turn = -np.asarray(side, np.float64)
-    series = [np.asarray(columns[name], np.float64) for name in FEATURES]
-    faced = [
-        turn * values if name in _MIRRORED else values
-        for name, values in zip(FEATURES, series, strict=True)
-    ]
-    return np.stack(faced, axis=-1)
+    # Any: Real stands for arrays too.
+    series: list[Any] = [np.asarray(columns[name], np.float64) for name in FEATURES]
+    turned: Any = np.asarray(side, np.float64)
+    bend: Any = curvature_series(columns)
+    seen = facing(beyond_bend(car, IntentionSample(*series), bend), turned)
+    return np.stack([np.asarray(each) for each in seen], axis=-1)
+
+
+def curvature_series(
+    columns: Mapping[str, NDArray[np.float64]],
+) -> NDArray[np.float64]:
+    """Curvature of the line along the road that the car is on, `(time,)` [1/m].
+
+    Args:
+        columns: `road_curvature` of the road's reference line, and `lateral_position`
+            from it, shape `(time,)` each. 0 stands for what is not known.
+    """
+    nothing = np.zeros(len(next(iter(columns.values()))))
+    found: list[Any] = []  # Any: as above
+    for name in ("road_curvature", "lateral_position"):
+        values = np.ma.asarray(columns.get(name, nothing), np.float64)
+        found.append(np.nan_to_num(np.ma.filled(values, np.nan)))
+    return np.asarray(line_curvature(*found))
 
 
 @compiled

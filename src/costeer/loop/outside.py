@@ -20,6 +20,7 @@ from costeer.intention.features import (
     FEATURES,
     WINDOW_LENGTH,
     IntentionSample,
+    beyond_bend,
     facing,
     valid_samples,
 )
@@ -29,7 +30,8 @@ from costeer.intention.predictors.registry import PREDICTORS, predictor
 from costeer.loop.endings import has_stopped, still
 from costeer.loop.rollout import Advance
 from costeer.loop.tick import INTENTION_GIVEN, Script, Verdict, likelier
-from costeer.plant.parameters import RoadParameters
+from costeer.plant.alignment import line_curvature
+from costeer.plant.parameters import CarParameters, RoadParameters
 from costeer.plant.place import BARRIER
 from costeer.plant.road import adjacent_side, distance_to_adjacent_lane
 from costeer.records.row import ROW_COLUMNS
@@ -43,26 +45,33 @@ _LANE = ROW_COLUMNS.index("lane")
 _LATERAL = ROW_COLUMNS.index("lateral_position")
 _PLACE = ROW_COLUMNS.index("longitudinal_position")
 _SPEED = ROW_COLUMNS.index("longitudinal_velocity")
+_CURVATURE = ROW_COLUMNS.index("road_curvature")
 _CONTACT = ROW_COLUMNS.index("contact")
 
 
-def sample_of(row: Rows, road: RoadParameters, beyond: bool = False) -> IntentionSample:
+def sample_of(
+    row: Rows, car: CarParameters, road: RoadParameters, beyond: bool = False
+) -> IntentionSample:
     """The predictor's sample of a row, facing right; a lost head is NaN.
+
+    What the road's bend asks for is taken off.
 
     Args:
         row: In the order of `ROW_COLUMNS`; more may follow.
+        car: That is driven.
         road: Tells on which side the adjacent lane is.
         beyond: Whether the other side is taken for that of the adjacent lane.
     """
     values = row[_SIGNALS].tolist()
     if row[_SEEN] < 0.5:
         values[_HEAD] = math.nan
-    lane = float(row[_LANE])
+    lane, place = float(row[_LANE]), float(row[_LATERAL])
     side = adjacent_side(road, lane)
     if beyond:
-        side, place = -side, float(row[_LATERAL])
+        side = -side
         values[DISTANCE] = distance_to_adjacent_lane(road, place, lane, side)
-    return facing(IntentionSample(*values), side)
+    bend = line_curvature(float(row[_CURVATURE]), place)
+    return facing(beyond_bend(car, IntentionSample(*values), bend), side)
 
 
 Ask = Callable[[IntentionSample], float]
@@ -74,11 +83,14 @@ class Outlook:
 
     Args:
         make: Makes what is asked sample by sample, its window empty.
+        car: That is driven.
         road: Its lanes.
     """
 
-    def __init__(self, make: Callable[[], Ask], road: RoadParameters) -> None:
-        self._make, self._road = make, road
+    def __init__(
+        self, make: Callable[[], Ask], car: CarParameters, road: RoadParameters
+    ) -> None:
+        self._make, self._car, self._road = make, car, road
         self.forget()
 
     def forget(self) -> None:
@@ -91,12 +103,12 @@ class Outlook:
         Raises:
             ValueError: If the predictor gives no probability, or breaks.
         """
-        usual = self._usual(sample_of(row, self._road))
+        usual = self._usual(sample_of(row, self._car, self._road))
         lane = float(row[_LANE])
         side = adjacent_side(self._road, lane)
         if self._road.num_lanes <= 2.0:
             return Verdict(usual, side)
-        other = self._other(sample_of(row, self._road, beyond=True))
+        other = self._other(sample_of(row, self._car, self._road, beyond=True))
         return likelier(self._road, lane, side, usual, other)
 
 

@@ -20,7 +20,7 @@ from costeer.base.packing import unpack
 from costeer.controller.signals import Request
 from costeer.drivers.interface import DriverNoise
 from costeer.intention.bracket import advance
-from costeer.intention.features import IntentionSample, facing
+from costeer.intention.features import IntentionSample, beyond_bend, facing
 from costeer.intention.starts import BracketState, BracketWeights
 from costeer.loop.endings import has_stopped, still
 from costeer.loop.events import has_collided
@@ -36,8 +36,9 @@ from costeer.loop.step import (
     sense,
     step,
 )
+from costeer.plant.alignment import line_curvature
 from costeer.plant.fleet import num_cars, write_cars
-from costeer.plant.parameters import RoadParameters
+from costeer.plant.parameters import CarParameters, RoadParameters
 from costeer.plant.road import lane_exists
 from costeer.sensing.measurement import Measurement, facing_beyond
 
@@ -126,10 +127,11 @@ def likelier(
 
 
 @compiled
-def intention_sample(measurement: Measurement) -> IntentionSample:
+def intention_sample(car: CarParameters, measurement: Measurement) -> IntentionSample:
     """Eq. (1): the six signals, mirrored so that the adjacent lane is on the right.
 
-    Of a head that the tracker has lost the network is told so.
+    What the road's bend asks for is taken off. Of a head that the tracker has lost the
+    network is told so.
     """
     seen = xp.select(measurement.head_yaw_valid, measurement.head_yaw, math.nan)
     sample = IntentionSample(
@@ -140,7 +142,8 @@ def intention_sample(measurement: Measurement) -> IntentionSample:
         distance_to_adjacent_lane=measurement.distance_to_adjacent_lane,
         yaw_angle=measurement.yaw_angle,
     )
-    return facing(sample, measurement.side)
+    bend = line_curvature(measurement.road_curvature, measurement.lateral_position)
+    return facing(beyond_bend(car, sample, bend), measurement.side)
 
 
 def probability_of(
@@ -179,16 +182,19 @@ def _probability_of(weights: Any, memory: Any, sample: Any) -> Any:
 
 @compiled
 def network_verdict(
-    road: RoadParameters, network: Network, measurement: Measurement
+    car: CarParameters,
+    road: RoadParameters,
+    network: Network,
+    measurement: Measurement,
 ) -> Verdict:
     """What the network says: asked for each side where there may be lanes on both."""
-    usual = probability_of(
-        network.weights, network.memory, intention_sample(measurement)
-    )
+    sample = intention_sample(car, measurement)
+    usual = probability_of(network.weights, network.memory, sample)
     if road.num_lanes <= 2.0:
         return Verdict(usual, measurement.side)
     turned = facing_beyond(road, measurement)
-    other = probability_of(network.weights, network.beyond, intention_sample(turned))
+    beyond = intention_sample(car, turned)
+    other = probability_of(network.weights, network.beyond, beyond)
     return likelier(road, measurement.lane, measurement.side, usual, other)
 
 
@@ -243,7 +249,7 @@ def tick(
     verdict = xp.when(
         script.intention == INTENTION_SCRIPTED, scripted_verdict, scripted, verdict
     )
-    asks = parameters.road, network, measurement
+    asks = parameters.car, parameters.road, network, measurement
     verdict = xp.when(
         script.intention == INTENTION_NETWORK, network_verdict, asks, verdict
     )

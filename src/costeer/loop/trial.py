@@ -157,7 +157,7 @@ def _run(
     return outside_rollout(
         begun(method, parameters, network, engine, driver=driver),
         script,
-        Outlook(lambda: Verdicts(judge, name).after, parameters.road),
+        Outlook(lambda: Verdicts(judge, name).after, parameters.car, parameters.road),
         noise,
         parameters.road,
         row_width(method, parameters),

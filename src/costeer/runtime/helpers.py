@@ -98,9 +98,10 @@ class Helpers:
         self._add(Loss.WATCHDOG, run_watchdog, watched)
         if self._setup.intention == "network":
             absent = ("head_yaw",) if self._setup.head is None else ()
-            road = drive_parameters(self._setup).road
-            network = (memory, road, absent, trial.predictor, trial.weights)
-            self._add(Loss.NETWORK, run_network, *network)
+            world = drive_parameters(self._setup)
+            asked = (absent, trial.predictor, trial.weights)
+            given = (memory, world.car, world.road, *asked)
+            self._add(Loss.NETWORK, run_network, *given)
         if self._setup.head is not None:
             link = MailboxLink(memory)
             head = (self._setup.head, link, link, link.lose)

@@ -21,7 +21,7 @@ from costeer.intention.wavefront import advance, initial_state, wavefront_weight
 from costeer.loop.outside import Ask, Outlook, Verdicts
 from costeer.loop.parameters import DT
 from costeer.loop.tick import Verdict
-from costeer.plant.parameters import RoadParameters
+from costeer.plant.parameters import CarParameters, RoadParameters
 from costeer.runtime.frame import PLACE
 from costeer.runtime.patience import SERVER_PATIENCE
 from costeer.runtime.shared import Mailbox, close_shared, open_shared
@@ -36,16 +36,21 @@ class Reader:
     """The predictor over the frames of one drive.
 
     Args:
+        car: Of the drive.
         road: Of the drive.
         absent: Signals that this drive does not have, as `head_yaw`.
         predictor: Network, or function of windows.
     """
 
     def __init__(
-        self, road: RoadParameters, absent: tuple[str, ...], predictor: ChosenPredictor
+        self,
+        car: CarParameters,
+        road: RoadParameters,
+        absent: tuple[str, ...],
+        predictor: ChosenPredictor,
     ) -> None:
         self._make = _asked(predictor, absent)
-        self._outlook = Outlook(self._make, road)
+        self._outlook = Outlook(self._make, car, road)
         self._time = -1.0
 
     def warm_up(self) -> None:
@@ -83,6 +88,7 @@ def _is_needed(mailbox: Mailbox) -> bool:
 
 def run_network(
     memory: str,
+    car: CarParameters,
     road: RoadParameters,
     absent: tuple[str, ...],
     predictor: str,
@@ -92,7 +98,7 @@ def run_network(
     for name in ("SIGINT", "SIGTERM", "SIGHUP"):  # the server says when to stop
         ignore(name)
     shared = open_shared(memory)
-    reader = Reader(road, absent, chosen_predictor(predictor, weights))
+    reader = Reader(car, road, absent, chosen_predictor(predictor, weights))
     reader.warm_up()
     next_frame = shared.frames.written
     shared.mailbox.put(reading=1.0)

@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 
 from costeer.base.nested import filled
 from costeer.plant.fleet import KINDS, CarKind
-from costeer.plant.parameters import CARS, CarParameters
+from costeer.plant.parameters import CarParameters
+from costeer.plant.recorded import recorded_car
 from costeer.records.columns import TrialRecord
 from costeer.scenarios.definition import Scenario, Zone
 from costeer.scenarios.reading import scenario_named
@@ -38,7 +39,7 @@ class Surroundings(NamedTuple):
 
 def surroundings(record: TrialRecord) -> Surroundings:
     """What a record says of its world; what it does not say is as usual."""
-    car, scenario = _car(record.metadata), recorded_scenario(record)
+    car, scenario = recorded_car(record.metadata), recorded_scenario(record)
     if scenario is None:
         return Surroundings(car=car)
     return Surroundings(
@@ -73,13 +74,6 @@ def _part(about: Mapping[str, object], name: str) -> Mapping[str, Any]:
     configuration = about.get("configuration")
     part = configuration.get(name) if isinstance(configuration, Mapping) else None
     return part if isinstance(part, Mapping) else {}
-
-
-def _car(about: Mapping[str, object]) -> CarParameters:
-    usual = CARS.get(str(about.get("car")), CarParameters())
-    given = _part(about, "car")
-    known = {k: given[k] for k in CarParameters._fields if _is_number(given.get(k))}
-    return usual._replace(**known)
 
 
 def _is_number(value: object) -> bool:

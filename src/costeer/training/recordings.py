@@ -25,6 +25,8 @@ from costeer.intention.features import (
     feature_series,
     mirrored,
 )
+from costeer.plant.parameters import DEFAULT_CAR, CarParameters
+from costeer.plant.recorded import recorded_car
 from costeer.records.adaptation import AS_IT_IS, Adaptation, adapted, cleaned
 from costeer.records.checks import check_time, text_told
 from costeer.records.contradictions import Lanes, contradictions, lanes_of, unwrapped
@@ -37,6 +39,7 @@ from costeer.training.labels import Labels, labels
 from costeer.training.tables import (
     Columns,
     absent_signals,
+    bend_told,
     courses,
     crossings_of,
     remarks,
@@ -44,6 +47,7 @@ from costeer.training.tables import (
     uneven_told,
     with_distance,
     with_side,
+    with_signals,
 )
 
 _NEEDED = ("time", "longitudinal_velocity")
@@ -95,7 +99,11 @@ def recording(driver: str, name: str, columns: Columns) -> Recording:
 
 
 def runs(
-    driver: str, name: str, columns: Columns, lanes: Lanes | None = None
+    driver: str,
+    name: str,
+    columns: Columns,
+    lanes: Lanes | None = None,
+    car: CarParameters = DEFAULT_CAR,
 ) -> list[Recording]:
     """The recordings of a stretch: one on two lanes, else one for each side.
 
@@ -104,6 +112,7 @@ def runs(
         name: For messages.
         columns: Of the stretch, shape `(time,)` each.
         lanes: Of the road that a record says it was driven on.
+        car: That a record says was driven.
 
     Raises:
         ValueError: If a column is missing or holds what it cannot, or the rate is not
@@ -112,12 +121,12 @@ def runs(
     _check(name, columns)
     columns, told = unwrapped(columns)
     columns = with_distance(columns)
-    crossing = crossings_of(name, columns)
+    crossing, seen = crossings_of(name, columns), with_signals(columns)
     return [
         Recording(
             driver=driver,
             name=name + course.words,
-            features=feature_series(_tracked(columns), course.side),
+            features=feature_series(seen, course.side, car),
             side=course.side,
             crossing=crossing,
             intended=_intended(crossing, course.side, columns),
@@ -189,16 +198,6 @@ def wide_views(recording: Recording, lane_width: float = 3.5) -> list[Recording]
             )
         )
     return views
-
-
-def _tracked(columns: Columns) -> dict[str, NDArray[np.float64]]:
-    """The six signals, NaN where missing; head yaw where the head was not tracked."""
-    nothing = np.full(len(columns["time"]), np.nan)
-    series = {name: np.array(columns.get(name, nothing), float) for name in FEATURES}
-    if "head_yaw_valid" in columns:
-        lost = ~np.asarray(columns["head_yaw_valid"], bool)
-        series["head_yaw"][lost] = np.nan
-    return series
 
 
 def _intended(
@@ -288,7 +287,8 @@ def recordings_of(
         columns, dropped = cleaned(columns, adaptation, lanes)
         columns = with_side(columns, record.metadata)
         before += [f"{name}: {each}" for each in dropped]
-        return _with_notes(runs(driver, name, columns, lanes), before)
+        car = recorded_car(record.metadata)
+        return _with_notes(runs(driver, name, columns, lanes, car), before)
     _check_names(name, columns)
     for key in (key for key in _KEYS if key in columns):
         before += [f"{name}: {each}" for each in empty_told(key, columns[key])]
@@ -301,6 +301,7 @@ def recordings_of(
     columns, wrapped = unwrapped(columns)
     before += [f"{name}: {each}" for each in wrapped]
     notes = [*before, *_notes(name, columns), *_too_short(name, found)]
+    notes += [f"{name}: {each}" for each in bend_told(columns)]
     return [r._replace(notes=() if i else tuple(notes)) for i, r in enumerate(found)]
 
 

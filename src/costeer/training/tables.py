@@ -21,6 +21,7 @@ from costeer.intention.features import (
     SAMPLE_RATE,
     WINDOW_LENGTH,
     adjacent_side,
+    curvature_series,
 )
 from costeer.records.adaptation import EXTRA_NAMES
 from costeer.records.cars import CAR_COLUMN
@@ -70,6 +71,16 @@ def with_distance(columns: Columns) -> dict[str, NDArray[Any]]:
     lateral = np.asarray(columns["lateral_position"], np.float64)
     found[_DISTANCE] = np.abs(lateral - _LINE)
     return found
+
+
+def with_signals(columns: Columns) -> dict[str, NDArray[Any]]:
+    """Columns with all six signals, NaN where missing or the head was not tracked."""
+    nothing = np.full(len(columns["time"]), np.nan)
+    series = {name: np.array(columns.get(name, nothing), float) for name in FEATURES}
+    if "head_yaw_valid" in columns:
+        lost = ~np.asarray(columns["head_yaw_valid"], bool)
+        series["head_yaw"][lost] = np.nan
+    return {**columns, **series}
 
 
 def with_side(
@@ -268,6 +279,16 @@ def _gaps(columns: Columns) -> list[str]:
     return found
 
 
+def bend_told(columns: Columns) -> list[str]:
+    """A note on a table that tells of bends, and not of its car."""
+    if not curvature_series(columns).any():
+        return []
+    return [
+        "steering_wheel_angle and yaw_angle are taken less what road_curvature asks of "
+        "costeer's default car"
+    ]
+
+
 def uneven_told(name: str, columns: Columns) -> list[str]:
     """A note on rows that are not evenly spaced, if they are not."""
     steps = np.diff(np.asarray(columns["time"], np.float64))
@@ -315,4 +336,7 @@ def resampled(name: str, columns: Columns) -> dict[str, NDArray[Any]]:
         elif column in FEATURES:
             jumps = (crossing != 0) & (column == _DISTANCE)
             found[column] = delayed(samples, np.asarray(values, np.float64), jumps)
+        elif column == "road_curvature":  # the lane's: its place is not resampled
+            bends = curvature_series(columns)
+            found[column] = delayed(samples, bends, np.zeros(len(time), bool))
     return found
