@@ -16,7 +16,7 @@ from tests.web.page.conftest import until, wait_for
 from tests.web.page.stub import Json, Stub, served
 
 if TYPE_CHECKING:
-    from playwright.sync_api import Browser, Page
+    from playwright.sync_api import Browser, Page, Route
 
 pytestmark = pytest.mark.browser
 
@@ -295,6 +295,31 @@ def test_in_a_session_the_participants_language_is_spoken(browser: Browser) -> N
         inside.locator("body").press("h")
         for name in ("#losses", "#help"):
             assert inside.locator(name).is_hidden()
+        page.close()
+
+
+@pytest.mark.parametrize(
+    ("language", "told"), [(None, "Connecting …"), ("de", "Einen Moment …")]
+)
+def test_a_page_that_still_loads_says_so(
+    browser: Browser, language: str | None, told: str
+) -> None:
+    """What it is to show has not arrived: no black window without a word."""
+    held: list[Route] = []
+    with served(Stub()) as address:
+        page = browser.new_page(viewport={"width": 640, "height": 360})
+        page.route("**/api/hello*", lambda route: held.append(route))
+        page.goto(f"{address}/{'?low&clean' if language is None else 'page.css'}")
+        if language is not None:
+            page.evaluate(FRAMED, load_texts(language).pages)
+        shown = page.frames[-1].locator("#banner")
+        shown.filter(has_text=told).wait_for()
+        assert shown.inner_text().strip() == told
+        wait_for(page, lambda: len(held) == 1)
+        held[0].continue_()
+        shown.filter(has_not_text=told).wait_for()
+        until(page, f"{'' if language is None else 'frames[0].'}costeer?.state")
+        assert shown.inner_text().strip() not in ("", told)
         page.close()
 
 
