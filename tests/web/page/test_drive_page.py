@@ -95,6 +95,17 @@ def test_enter_starts_a_waiting_trial(driven: Driven) -> None:
     assert driven.page.locator("#banner").is_hidden()
 
 
+def test_who_has_no_keyboard_taps_the_message(driven: Driven) -> None:
+    driven.stub.heard.clear()
+    driven.enter("paused")
+    driven.stub.frame |= {"fault": float(FLAT_TYRE["code"])}
+    driven.page.locator("#banner", has_text="A tyre is flat.").click()
+    driven.enter("paused")  # what was wrong is not
+    driven.page.locator("#banner").click()
+    until(driven.page, "costeer.state === 'running'")
+    assert len(driven.stub.of_type("resume")) == 1
+
+
 def test_frames_arrive_by_name_and_are_counted(driven: Driven) -> None:
     driven.enter("running")
     before = driven.page.evaluate("costeer.frames")
