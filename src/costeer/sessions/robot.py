@@ -210,6 +210,8 @@ class Robot:
         """Do what a participant would, once."""
         if state["trouble"]:
             self.server.console("retry")
+        if state["held"]:
+            self.server.console("well", reason="rehearsed")
         kind = step.get("kind")
         if kind in ("ask", "consent"):
             self._answer(step)

@@ -312,6 +312,7 @@ class Session:
         step: str,
         answers: Mapping[str, Any],
         instrument: tuple[str, str],
+        unwell: str = "",
     ) -> None:
         """Keep the answers of a step and go on.
 
@@ -320,6 +321,7 @@ class Session:
             step: That they are for.
             answers: Item to value, checked before.
             instrument: Name and version.
+            unwell: Why who answers so should not go on.
 
         Raises:
             OutOfStepError: If another step is on, or other answers were given.
@@ -347,6 +349,8 @@ class Session:
                         **moment,
                     },
                 )
+            if unwell:
+                self.store.tell("unwell", unwell, participant, step)
             self.set_over(participant, step, "finished", "")
 
     def answers_of(self, participant: str, step: str) -> dict[str, str]:

@@ -94,6 +94,7 @@ class Page {
       return "saving";
     }
     if (state === "running" || state === "paused") return "frame";
+    if (this.state.held) return "wait";
     if (this.readyFor !== me) return "brief";
     return state === "ready" ? "frame" : "wait";
   }
