@@ -297,8 +297,8 @@ def test_in_a_session_the_participants_language_is_spoken(browser: Browser) -> N
         told.filter(has_text="Nehmen Sie das Lenkrad").wait_for()
         assert told.locator("kbd").inner_text() == "Enter"
         assert inside.locator("html").get_attribute("lang") == "de"
-        stub.frame |= {"fault": 5.0}  # before the start it is the experimenter's alone
-        page.wait_for_timeout(300)
+        stub.frame |= {"fault": 5.0}  # before the start nothing was interrupted
+        told.filter(has_text="Die Versuchsleitung bereitet").wait_for()
         assert told.inner_text().startswith("Bereit")
         stub.frame |= {"run_state": 2.0}
         told.filter(has_text="Die Fahrt wurde unterbrochen").wait_for()

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import threading
 import urllib.error
+import urllib.parse
 import urllib.request
 from pathlib import Path
 from typing import Any
@@ -203,6 +204,15 @@ def test_who_is_replaced_leaves(study: Study) -> None:
     console.act("replace", {"participant": "P01", "reason": "felt sick"})
     assert study.desk.participant == ""
     assert study.desk.session.status_of("P01") == "dropped"
+
+
+def test_the_console_hears_how_well_the_page_draws(study: Study) -> None:
+    console = console_of(study)
+    assert console.shown()["pictures"] is None
+    for told in ("57", "", "-1", "1e9", "9999", "nan", "\u0665"):  # an Arabic five
+        query = urllib.parse.urlencode({"pictures": told})
+        with urllib.request.urlopen(f"{study.participant}api/session?{query}"):
+            assert console.shown()["pictures"] == 57
 
 
 SICKENING = """

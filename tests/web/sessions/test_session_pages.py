@@ -252,13 +252,31 @@ def test_a_participant_who_is_held_sees_that_the_experimenter_is_at_work(
         route.fulfill(response=answer, json=state)
 
     console, page = open_page(study.console), open_page(study.participant)
-    page.route("**/api/session", told)
     begin(study, console)
+    page.route("**/api/session", told)
     page.get_by_text("The experimenter prepares the next part.").wait_for()
     assert page.get_by_role("button", name="I am ready").count() == 0
     held[0] = False
     page.get_by_role("button", name="I am ready").wait_for()
     page.unroute_all(behavior="wait")
+
+
+DRAWN = """async (pictures) => {
+  const { facts } = await import("/js/session/facts.js");
+  const drive = { state: "running", has_page: true };
+  const state = { step: { kind: "drive", drive }, disk: {}, page_seen: 0, pictures };
+  return facts(state, { value: () => Number.NaN }, 20).at(-2);
+}"""
+
+
+def test_a_page_that_draws_too_few_pictures_turns_red(
+    study: Study, open_page: OpenPage
+) -> None:
+    console = open_page(study.console)
+    told = {n: console.evaluate(DRAWN, n) for n in (29, 30, None)}
+    assert told[29]["unit"] == "29 fps, 20 ms"
+    assert told[None]["unit"] == "20 ms"
+    assert [each["kind"] for each in told.values()] == ["bad", "good", "good"]
 
 
 def test_refusals_stand_beside_what_was_pressed_until_dismissed(

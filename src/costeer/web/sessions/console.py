@@ -64,6 +64,7 @@ class Console:
                 "planned": self._session.plan.participants,
                 "checks": self._desk.checked,
                 "page_seen": time.monotonic() - self._desk.page_seen,
+                "pictures": self._desk.pictures,
                 "disk": {"free": free, "enough": free > SCARCE},
                 "processes": self._processes(),
                 "trouble": self._desk.trouble,

@@ -62,6 +62,7 @@ class Desk:
         self.checked: list[dict[str, Any]] = []
         self.trouble = ""
         self.page_seen = -math.inf
+        self.pictures: int | None = None  # a second, in the page that drives
         self._is_closing = False
 
     # What is on
@@ -108,6 +109,11 @@ class Desk:
                 "stopped": stopped,
                 "held": bool(held(self.session, standing.participant)),
             }
+
+    def hear_pictures(self, told: str) -> None:
+        """Take how well the page that drives draws; other pages tell nothing."""
+        if told.isascii() and told.isdigit() and len(told) <= 3:
+            self.pictures = int(told)
 
     def _attempt(self, standing: Standing) -> int:
         """Number of the drive that is on or comes next in the step that is on."""
