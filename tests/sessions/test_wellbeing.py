@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -24,12 +25,13 @@ SICK = dict.fromkeys(("nausea", "vertigo", "sweating", "fatigue"), 2)
 
 
 @pytest.fixture
-def session(tmp_path: Path) -> Session:
+def session(tmp_path: Path) -> Iterator[Session]:
     """A study in which P01 has just begun."""
     (tmp_path / "plan.yaml").write_text(PLAN)
     found = Session(tmp_path)
     found.begin("P01")
-    return found
+    yield found
+    found.close()
 
 
 def answered(session: Session, step: str, **given: int) -> str:
