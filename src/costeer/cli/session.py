@@ -16,6 +16,7 @@ from costeer.cli.session_trial import Rehearsal, power, rehearse_study
 if TYPE_CHECKING:
     from starlette.types import ASGIApp
 
+    from costeer.sessions.plan import Plan
     from costeer.sessions.session import Session
     from costeer.web.security import Access
     from costeer.web.serving import Running
@@ -187,6 +188,7 @@ def _new(folder: Path, plan: Path | None) -> None:
     write_text(target, text.decode("utf-8"))
     for told in (*scenario_notes(found, own), *blank_notes(found, folder)):
         note(f"costeer: {told}")
+    _tell_of_bends(found, own)
     even = balance(found, range(1, found.participants + 1)).is_even
     told = "balanced" if even else "not balanced over so many"
     typer.echo(target)
@@ -194,6 +196,15 @@ def _new(folder: Path, plan: Path | None) -> None:
         f"costeer: {found.participants} participants, {told}; edit the plan, then run:"
     )
     note(f"costeer session run {folder}")
+
+
+def _tell_of_bends(plan: Plan, beside: Path) -> None:
+    """Say what the network of a plan makes of bends, if a scenario has any."""
+    from costeer.cli.plug_ins import tell_of_bends
+    from costeer.sessions.scenarios import scenario_beside, scenario_names
+
+    driven = [scenario_beside(name, beside) for name in scenario_names(plan)]
+    tell_of_bends(driven, plan.intention)
 
 
 class _Lab(NamedTuple):
@@ -225,6 +236,7 @@ def _run(folder: Path, lab: _Lab, where: tuple[str, int], browser: bool) -> None
     blanks = blank_notes(session.plan, folder)
     for told in (*scenario_notes(session.plan, folder), *blanks):
         note(f"costeer: {told}")
+    _tell_of_bends(session.plan, folder)
     _compile(session, devices)
     with locked(folder):  # a second one would take running drives for aborted
         desk = Desk(session, devices)

@@ -38,11 +38,10 @@ def power(
     """
     from costeer.base.files import write_text
     from costeer.cli.console import progress
-    from costeer.sessions.plan import PLAN_FILE
-    from costeer.sessions.plan_file import read_plan
+    from costeer.sessions.plan_file import plan_file_in, read_plan
     from costeer.sessions.power import PowerSettings, compared_steps, planned_power
 
-    found = read_plan(plan or folder / PLAN_FILE)
+    found = read_plan(plan or plan_file_in(folder))
     settings = PowerSettings(drivers=drivers, seed=seed, intention=intention)
     total = drivers * len(compared_steps(found))
     beside = plan.parent if plan else folder

@@ -70,6 +70,21 @@ def paper_plan_text() -> str:
     return files("costeer.sessions").joinpath("paper.yaml").read_text("utf-8")
 
 
+def plan_file_in(folder: Path) -> Path:
+    """The plan of the study in a folder.
+
+    Raises:
+        ValueError: If there is none.
+    """
+    file = folder / PLAN_FILE
+    if not file.is_file():
+        raise ValueError(
+            f"{folder} holds no study with people, as there is no {PLAN_FILE} in "
+            f"it; make one with: costeer session new {folder}"
+        )
+    return file
+
+
 def read_plan(path: Path) -> Plan:
     """The plan of a file.
 

@@ -29,6 +29,9 @@ ACCIDENTS = ("server", "loop", "network", "watchdog", "browser")
 _PATIENCE = 120.0
 """A rehearsal in which nothing moves for so long has failed [s]."""
 
+_MOST_ATTEMPTS = 10
+"""Nor does one come to an end whose drive breaks so often though nothing was killed."""
+
 _FLAGS = (
     "--no-sandbox",
     "--use-angle=swiftshader",
@@ -113,6 +116,7 @@ class Robot:
         self.accidents = dict.fromkeys(ACCIDENTS, 0)
         self.waits: list[float] = []
         self._who, self._is_seated = "", False
+        self._moved = 0.0
 
     def close(self) -> None:
         """End server and browser."""
@@ -130,12 +134,12 @@ class Robot:
             ValueError: If nothing moves any more.
         """
         self._who, self._is_seated = who, False
-        moved, last = time.monotonic(), ""
+        self._moved, last = time.monotonic(), ""
         next_accident = self._until_accident()
         while (on := self._went_on()) != "done":
             if on and on != last:
-                last, moved = on, time.monotonic()
-            if time.monotonic() - moved > _PATIENCE:
+                last, self._moved = on, time.monotonic()
+            if time.monotonic() - self._moved > _PATIENCE:
                 log = self._folder / "rehearsal.log"
                 raise ValueError(
                     f"{who} stands at {last} for {_PATIENCE:g} s; the computer is too "
@@ -163,7 +167,7 @@ class Robot:
             self._told(f"{self._who}: browser: {str(error).splitlines()[0]}")
             self._is_seated = False
             return ""
-        return f"{step.get('id')} {step.get('drive', {}).get('state')}"
+        return _told(step)
 
     @property
     def _errors(self) -> type[Exception]:
@@ -180,7 +184,9 @@ class Robot:
     def _sit_down(self) -> None:
         """Have server, participant and page there."""
         if not self.server.is_alive:
+            begun = time.monotonic()
             self.server.start()
+            self._moved += time.monotonic() - begun  # it may compile for long
         self.server.console("begin", participant=self._who)
         self._open_page()
         self._is_seated = True
@@ -204,6 +210,8 @@ class Robot:
         """Do what a participant would, once."""
         if state["trouble"]:
             self.server.console("retry")
+        if state["held"]:
+            self.server.console("well", reason="rehearsed")
         kind = step.get("kind")
         if kind in ("ask", "consent"):
             self._answer(step)
@@ -262,6 +270,7 @@ class Robot:
     def _drive(self, step: dict[str, Any]) -> None:
         """Say that one is ready, start in the frame, go on after a pause."""
         stands = step["drive"]["state"]
+        self._refuse_endless(step)
         frame = self._page.locator("iframe:not([inert])")
         if stands in ("starting", "ready", "waiting") and not frame.count():
             button = self._page.locator("#step button")
@@ -275,10 +284,27 @@ class Robot:
                 )
         if step["drive"].get("is_broken"):
             self.server.console("acknowledge")
+        elif stands == "paused" and time.monotonic() - self._moved > _PATIENCE / 4.0:
+            self._told(f"{self._who}: {step['id']} stopped: {step['drive']['reason']}")
+            self.server.console("stop")
         elif stands in ("ready", "paused") and frame.count():
             inside = self._page.frame_locator("iframe:not([inert])").locator("body")
             inside.press("Enter", timeout=5000)
             time.sleep(0.4)
+
+    def _refuse_endless(self, step: dict[str, Any]) -> None:
+        """Give up a drive that never comes to its end.
+
+        Raises:
+            ValueError: If it was begun too often.
+        """
+        if step["attempt"] > _MOST_ATTEMPTS + sum(self.accidents.values()):
+            rows = self.server.console()["attempts"]
+            why = [row["reason"] for row in rows if row["reason"]]
+            raise ValueError(
+                f"{self._who} has begun {step['id']} {step['attempt']} times; the "
+                f"last time: {why[-1] if why else 'no reason'}"
+            )
 
     def _time_console(self) -> None:
         """Measure how long the console waits for an answer while someone drives [s]."""
@@ -324,6 +350,13 @@ class Robot:
             if "--headless" in command and "--type=" not in command:
                 browsers.append(int(pid))
         return next((pid for pid in browsers if _is_below(pid, parents)), 0)
+
+
+def _told(step: dict[str, Any]) -> str:
+    """Where a session stands; it changes as long as somebody drives on."""
+    drive = step.get("drive", {})
+    driven = f" {drive['metres']:.0f} m" if drive.get("state") == "running" else ""
+    return f"{step.get('id')} {drive.get('state', '')}{driven}".rstrip()
 
 
 def _is_below(pid: int, parents: dict[int, int]) -> bool:

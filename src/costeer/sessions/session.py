@@ -15,13 +15,12 @@ from costeer.base.files import read_whole
 from costeer.loop.scenario import TrialSetup
 from costeer.sessions.plan import (
     DONE,
-    PLAN_FILE,
     Plan,
     Step,
     session_steps,
     trial_of,
 )
-from costeer.sessions.plan_file import LARGEST, parsed_plan
+from costeer.sessions.plan_file import LARGEST, parsed_plan, plan_file_in
 from costeer.sessions.questionnaires.answers import cleaned
 from costeer.sessions.scenarios import scenario_texts
 from costeer.sessions.standing import (
@@ -54,12 +53,7 @@ class Session:
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
-        plan_file = folder / PLAN_FILE
-        if not plan_file.is_file():
-            raise ValueError(
-                f"{folder} holds no study with people, as there is no {PLAN_FILE} in "
-                f"it; make one with: costeer session new {folder}"
-            )
+        plan_file = plan_file_in(folder)
         text = read_whole(plan_file, LARGEST)
         self.plan = parsed_plan(text, str(plan_file))
         scenarios = scenario_texts(self.plan, folder)
@@ -318,6 +312,7 @@ class Session:
         step: str,
         answers: Mapping[str, Any],
         instrument: tuple[str, str],
+        unwell: str = "",
     ) -> None:
         """Keep the answers of a step and go on.
 
@@ -326,6 +321,7 @@ class Session:
             step: That they are for.
             answers: Item to value, checked before.
             instrument: Name and version.
+            unwell: Why who answers so should not go on.
 
         Raises:
             OutOfStepError: If another step is on, or other answers were given.
@@ -353,6 +349,8 @@ class Session:
                         **moment,
                     },
                 )
+            if unwell:
+                self.store.tell("unwell", unwell, participant, step)
             self.set_over(participant, step, "finished", "")
 
     def answers_of(self, participant: str, step: str) -> dict[str, str]:

@@ -16,7 +16,7 @@ from tests.web.page.conftest import until, wait_for
 from tests.web.page.stub import Json, Stub, served
 
 if TYPE_CHECKING:
-    from playwright.sync_api import Browser, Page
+    from playwright.sync_api import Browser, Page, Route
 
 pytestmark = pytest.mark.browser
 
@@ -93,6 +93,17 @@ def test_enter_starts_a_waiting_trial(driven: Driven) -> None:
     until(driven.page, "costeer.state === 'running'")
     assert len(driven.stub.of_type("start")) == 1
     assert driven.page.locator("#banner").is_hidden()
+
+
+def test_who_has_no_keyboard_taps_the_message(driven: Driven) -> None:
+    driven.stub.heard.clear()
+    driven.enter("paused")
+    driven.stub.frame |= {"fault": float(FLAT_TYRE["code"])}
+    driven.page.locator("#banner", has_text="A tyre is flat.").click()
+    driven.enter("paused")  # what was wrong is not
+    driven.page.locator("#banner").click()
+    until(driven.page, "costeer.state === 'running'")
+    assert len(driven.stub.of_type("resume")) == 1
 
 
 def test_frames_arrive_by_name_and_are_counted(driven: Driven) -> None:
@@ -286,8 +297,8 @@ def test_in_a_session_the_participants_language_is_spoken(browser: Browser) -> N
         told.filter(has_text="Nehmen Sie das Lenkrad").wait_for()
         assert told.locator("kbd").inner_text() == "Enter"
         assert inside.locator("html").get_attribute("lang") == "de"
-        stub.frame |= {"fault": 5.0}  # before the start it is the experimenter's alone
-        page.wait_for_timeout(300)
+        stub.frame |= {"fault": 5.0}  # before the start nothing was interrupted
+        told.filter(has_text="Die Versuchsleitung bereitet").wait_for()
         assert told.inner_text().startswith("Bereit")
         stub.frame |= {"run_state": 2.0}
         told.filter(has_text="Die Fahrt wurde unterbrochen").wait_for()
@@ -295,6 +306,31 @@ def test_in_a_session_the_participants_language_is_spoken(browser: Browser) -> N
         inside.locator("body").press("h")
         for name in ("#losses", "#help"):
             assert inside.locator(name).is_hidden()
+        page.close()
+
+
+@pytest.mark.parametrize(
+    ("language", "told"), [(None, "Connecting …"), ("de", "Einen Moment …")]
+)
+def test_a_page_that_still_loads_says_so(
+    browser: Browser, language: str | None, told: str
+) -> None:
+    """What it is to show has not arrived: no black window without a word."""
+    held: list[Route] = []
+    with served(Stub()) as address:
+        page = browser.new_page(viewport={"width": 640, "height": 360})
+        page.route("**/api/hello*", lambda route: held.append(route))
+        page.goto(f"{address}/{'?low&clean' if language is None else 'page.css'}")
+        if language is not None:
+            page.evaluate(FRAMED, load_texts(language).pages)
+        shown = page.frames[-1].locator("#banner")
+        shown.filter(has_text=told).wait_for()
+        assert shown.inner_text().strip() == told
+        wait_for(page, lambda: len(held) == 1)
+        held[0].continue_()
+        shown.filter(has_not_text=told).wait_for()
+        until(page, f"{'' if language is None else 'frames[0].'}costeer?.state")
+        assert shown.inner_text().strip() not in ("", told)
         page.close()
 
 

@@ -54,9 +54,9 @@ def home(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
 
 
 @pytest.fixture
-def study(tmp_path: Path) -> Iterator[Study]:
-    """A study that has just been begun."""
-    (tmp_path / "plan.yaml").write_text(PLAN, "utf-8")
+def study(tmp_path: Path, request: pytest.FixtureRequest) -> Iterator[Study]:
+    """A study that has just been begun, by `PLAN` or by the parameter."""
+    (tmp_path / "plan.yaml").write_text(getattr(request, "param", PLAN), "utf-8")
     desk = Desk(Session(tmp_path), Devices(checks=lambda: CHECKS))
     try:
         with served(lambda access: session_app(desk, access)) as running:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import threading
 import urllib.error
+import urllib.parse
 import urllib.request
 from pathlib import Path
 from typing import Any
@@ -203,3 +204,63 @@ def test_who_is_replaced_leaves(study: Study) -> None:
     console.act("replace", {"participant": "P01", "reason": "felt sick"})
     assert study.desk.participant == ""
     assert study.desk.session.status_of("P01") == "dropped"
+
+
+def test_the_console_hears_how_well_the_page_draws(study: Study) -> None:
+    console = console_of(study)
+    assert console.shown()["pictures"] is None
+    for told in ("57", "", "-1", "1e9", "9999", "nan", "\u0665"):  # an Arabic five
+        query = urllib.parse.urlencode({"pictures": told})
+        with urllib.request.urlopen(f"{study.participant}api/session?{query}"):
+            assert console.shown()["pictures"] == 57
+
+
+SICKENING = """
+title: A study
+steps:
+  - {kind: ask, instrument: fms}
+  - {kind: drive, condition: manual}
+"""
+
+
+class _Waiting:
+    """A drive whose processes are there."""
+
+    state, is_ending = "ready", False
+    pages = None
+
+    def __init__(self) -> None:
+        self.asked: list[str] = []
+
+    def ask(self, *command: str) -> None:
+        self.asked += command
+
+    def told(self) -> dict[str, Any]:
+        return {"state": self.state}
+
+    def end(self, *_: object) -> None:
+        return
+
+
+@pytest.mark.parametrize("study", [SICKENING], indirect=True)
+def test_who_is_unwell_by_a_questionnaire_waits_for_the_experimenter(
+    study: Study, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    desk, drive, begun = study.desk, _Waiting(), list[str]()
+    monkeypatch.setattr(desk, "_drive", drive)
+    monkeypatch.setattr(desk, "_driven", ("P01", "drive-manual", 1))
+    monkeypatch.setattr(desk, "_begin_attempt", lambda _, step: begun.append(step.id))
+    monkeypatch.setattr("costeer.web.sessions.shown.is_enough", lambda *_: False)
+    console = console_of(study)
+    state = desk.answers("P01", "ask-fms", {"sickness": 15})
+    assert (state["step"]["id"], state["held"], begun) == ("drive-manual", True, [])
+    assert "fms is 15, the limit 15" in console.shown()["unwell"]
+    with pytest.raises(ValueError, match="no drive may begin now"):
+        console.act("start", {})
+    with pytest.raises(ValueError, match="give a reason"):
+        console.act("well", {"reason": ""})
+    assert (begun, drive.asked) == ([], [])
+    shown = console.act("well", {"reason": "rested"})
+    assert (shown["unwell"], begun[:1]) == ("", ["drive-manual"])
+    assert not desk.state()["held"]
+    monkeypatch.setattr(desk, "_drive", None)

@@ -66,6 +66,7 @@ def test_a_drive_survives_tabs_reload_and_back_and_stops_at_once(
     with both_pages(tmp_path) as (page, console, wrong, process):
         console.get_by_role("button", name="Begin", exact=True).click()
         start(page, console)
+        wait_for(console, "document.querySelector('#facts').innerText.includes(' fps')")
         check_charts(console)
         check_second_tab(page, console)
         driven = metres(console)

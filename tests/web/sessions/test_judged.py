@@ -10,6 +10,7 @@ import pytest
 from costeer.records.columns import TrialRecord
 from costeer.records.record import write_record
 from costeer.runtime.markers import Marker
+from costeer.runtime.states import Fault
 from costeer.sessions.plan import Step
 from costeer.sessions.session import Session
 from costeer.web.sessions import judged
@@ -155,6 +156,15 @@ def test_attempt_ends_at_the_end_of_the_course_and_at_a_collision(ended: str) ->
     drive.end = lambda *how: outcomes.append(how)  # type: ignore[method-assign,assignment]
     drive._hear(Marker("ended", ended))
     assert [how[0] for how in outcomes] == ([] if ended == "server" else [True])
+
+
+def test_what_was_wrong_is_told_until_it_is_mended() -> None:
+    drive = StepDrive.__new__(StepDrive)
+    drive.markers = []
+    drive._hear(Marker("fault", Fault.WHEEL_LOST.word))
+    assert drive.reason == Fault.WHEEL_LOST.text
+    drive._hear(Marker("fault", Fault.ACKNOWLEDGED.word))
+    assert drive.reason == ""
 
 
 def test_drives_that_break_before_anybody_drives_are_not_begun_for_ever(

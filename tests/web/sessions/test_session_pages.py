@@ -213,6 +213,72 @@ def test_a_fault_that_waits_for_the_experimenter_is_told_from_afar(
     console.unroute_all(behavior="wait")
 
 
+@pytest.mark.parametrize(
+    "study",
+    [
+        "title: A study\nsteps:\n  - {kind: ask, instrument: fms}\n"
+        "  - {kind: break, text: break, minutes: 1}\n"
+    ],
+    indirect=True,
+)
+def test_the_console_says_who_is_unwell_until_it_is_decided(
+    study: Study, open_page: OpenPage
+) -> None:
+    console, page = open_page(study.console), open_page(study.participant)
+    begin(study, console)
+    page.locator("input[type=radio][value='18']").check(force=True)
+    page.get_by_role("button", name="Continue").click()
+    banner = console.locator("#banners li")
+    banner.filter(has_text="P01 waits: fms is 18, the limit 15: end").wait_for()
+    banner.get_by_role("button", name="Goes on").click()
+    dialog = console.get_by_role("dialog")
+    dialog.get_by_label("Reason").fill("feels well again")
+    dialog.get_by_role("button", name="Goes on").click()
+    banner.wait_for(state="detached")
+    console.locator("#events", has_text="feels well again").wait_for()
+
+
+def test_a_participant_who_is_held_sees_that_the_experimenter_is_at_work(
+    study: Study, open_page: OpenPage
+) -> None:
+    drive = {"state": "ready", "is_broken": False, "reason": ""}
+    held = [True]
+
+    def told(route: Route) -> None:
+        answer = route.fetch()
+        state = answer.json()
+        state |= {"held": held[0]}
+        state["step"] |= {"kind": "drive", "drive": drive, "attempt": 1}
+        route.fulfill(response=answer, json=state)
+
+    console, page = open_page(study.console), open_page(study.participant)
+    begin(study, console)
+    page.route("**/api/session", told)
+    page.get_by_text("The experimenter prepares the next part.").wait_for()
+    assert page.get_by_role("button", name="I am ready").count() == 0
+    held[0] = False
+    page.get_by_role("button", name="I am ready").wait_for()
+    page.unroute_all(behavior="wait")
+
+
+DRAWN = """async (pictures) => {
+  const { facts } = await import("/js/session/facts.js");
+  const drive = { state: "running", has_page: true };
+  const state = { step: { kind: "drive", drive }, disk: {}, page_seen: 0, pictures };
+  return facts(state, { value: () => Number.NaN }, 20).at(-2);
+}"""
+
+
+def test_a_page_that_draws_too_few_pictures_turns_red(
+    study: Study, open_page: OpenPage
+) -> None:
+    console = open_page(study.console)
+    told = {n: console.evaluate(DRAWN, n) for n in (29, 30, None)}
+    assert told[29]["unit"] == "29 fps, 20 ms"
+    assert told[None]["unit"] == "20 ms"
+    assert [each["kind"] for each in told.values()] == ["bad", "good", "good"]
+
+
 def test_refusals_stand_beside_what_was_pressed_until_dismissed(
     study: Study, open_page: OpenPage
 ) -> None:

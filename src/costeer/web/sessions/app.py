@@ -72,6 +72,7 @@ def _participant_routes(desk: Desk) -> list[BaseRoute]:
 
     async def answer_state(request: Request) -> Response:
         desk.page_seen = time.monotonic()
+        desk.hear_pictures(request.query_params.get("pictures", ""))
         return await _answered(desk.state)
 
     def takes(does: Callable[[str, dict[str, Any]], dict[str, Any]]) -> Any:

@@ -18,6 +18,7 @@ from costeer.sessions.questionnaires.texts import languages
 from costeer.sessions.standing import HOLDING, known_person
 from costeer.sessions.stopping import take_part_again
 from costeer.sessions.store import now
+from costeer.sessions.wellbeing import held, let_go_on
 from costeer.sessions.withdrawal import num_withdrawn, withdraw
 from costeer.web.sessions.desk import Desk
 from costeer.web.sessions.step_drive import PAUSED, RUNNING, SAVING
@@ -63,6 +64,7 @@ class Console:
                 "planned": self._session.plan.participants,
                 "checks": self._desk.checked,
                 "page_seen": time.monotonic() - self._desk.page_seen,
+                "pictures": self._desk.pictures,
                 "disk": {"free": free, "enough": free > SCARCE},
                 "processes": self._processes(),
                 "trouble": self._desk.trouble,
@@ -84,6 +86,7 @@ class Console:
                 "attempts": self._attempts(),
                 "balance": self._balance(),
                 "events": self._events(),
+                "unwell": held(self._session, self._desk.participant),
             }
             self._kept = key, told
         return self._kept[1]
@@ -209,11 +212,17 @@ class Console:
     def _command(self, *command: object) -> None:
         if self._desk.drive is None or not self._desk.present().step.drives:
             raise ValueError("nobody drives in this step")
+        if not self._desk.drive_on_show:
+            raise ValueError("no drive may begin now; the console says why")
         self._desk.drive.ask(*map(str, command))
 
     def retry(self) -> None:
         """Try again what could not be done."""
         self._desk.trouble = ""
+
+    def well(self, reason: str) -> None:
+        """Let the participant go on, whatever a questionnaire says."""
+        let_go_on(self._session, self._desk.present().participant, str(reason))
 
     def stop(self, reason: str = "stopped by the experimenter") -> None:
         """End the attempt; it is kept as aborted and driven again."""
@@ -298,6 +307,7 @@ ACTIONS: dict[str, tuple[Callable[..., None], tuple[str, ...]]] = {
     "begin": (Console.begin, ("participant",)),
     "leave": (Console.leave, ()),
     "retry": (Console.retry, ()),
+    "well": (Console.well, ("reason",)),
     "start": (lambda console: console._command("start"), ()),
     "pause": (lambda console: console._command("pause", "experimenter"), ()),
     "resume": (lambda console: console._command("resume"), ()),

@@ -23,6 +23,7 @@ from costeer.sessions.session import Session
 from costeer.sessions.standing import ENDED, OutOfStepError, Standing
 from costeer.sessions.stopping import stop_taking_part, take_part_again
 from costeer.sessions.store import StoreError
+from costeer.sessions.wellbeing import held, unwell
 from costeer.web.drive import PageOptions
 from costeer.web.sessions.devices import Devices, facts_of
 from costeer.web.sessions.judged import LiveCriterion, driven_whole, measured
@@ -61,6 +62,7 @@ class Desk:
         self.checked: list[dict[str, Any]] = []
         self.trouble = ""
         self.page_seen = -math.inf
+        self.pictures: int | None = None  # a second, in the page that drives
         self._is_closing = False
 
     # What is on
@@ -105,7 +107,13 @@ class Desk:
                     standing, self._drive, attempt, self.criterion
                 ),
                 "stopped": stopped,
+                "held": bool(held(self.session, standing.participant)),
             }
+
+    def hear_pictures(self, told: str) -> None:
+        """Take how well the page that drives draws; other pages tell nothing."""
+        if told.isascii() and told.isdigit() and len(told) <= 3:
+            self.pictures = int(told)
 
     def _attempt(self, standing: Standing) -> int:
         """Number of the drive that is on or comes next in the step that is on."""
@@ -180,7 +188,8 @@ class Desk:
             instrument = self._shown.instrument(who, steps[step])
             checked = checked_answers(instrument, given)
             about = instrument.name, instrument.version
-            self.session.answer(who, step, checked, about)
+            why = unwell(self.session, who, step, instrument, checked)
+            self.session.answer(who, step, checked, about, why)
             return self.state()
 
     def stop_taking_part(self, participant: str, deletes: bool) -> dict[str, Any]:
@@ -255,7 +264,8 @@ class Desk:
                 self.leave_drive("another step is on")
             if self._drive is None:
                 self._start(who, ahead[0])
-            if ahead[0].id == standing.step.id and not self._is_begun:
+            is_due = ahead[0].id == standing.step.id and not self._is_begun
+            if is_due and not held(self.session, who):
                 self._begin_attempt(who, ahead[0])
         except (ValueError, OSError) as error:
             self.trouble = str(error)

@@ -147,6 +147,8 @@ class StepDrive:
             self._break(Fault.UNWATCHED)  # nobody drives on without it
         elif marker.kind == "lost":
             self._lost.append(marker.name)
+        elif marker.name == Fault.ACKNOWLEDGED.word:
+            self.reason = ""  # nothing is wrong any more
         elif marker.kind in ("fault", "error"):
             self.reason = _words(marker)
         elif marker.kind in ("resumed", "started"):

@@ -134,6 +134,7 @@ export class Drive {
   listen() {
     addEventListener("keydown", (event) => this.keyDown(event));
     addEventListener("keyup", (event) => this.controls.key(event.code, false) && this.sendInput());
+    byId("banner").addEventListener("click", () => this.goOn()); // without a keyboard
     document.addEventListener("visibilitychange", () => {
       const drives = this.hello.role === "driver" && this.state === "running";
       if (document.hidden && drives) this.link?.send({ type: "pause" });

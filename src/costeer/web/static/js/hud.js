@@ -124,6 +124,7 @@ export class Hud {
     const mayGoOn = !fault?.text || (fault.can_resume && !fault.must_be_acknowledged);
     if (!title) this.message(title);
     else if (mayGoOn) this.message(words("title"), [words("text")].filter(Boolean), warns);
+    else if (name === "waiting") this.message(words("title"), [this.texts.wait_text], true);
     else this.message(words("title"), [this.texts.error_drive], true);
   }
 

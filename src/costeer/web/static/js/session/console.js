@@ -3,6 +3,7 @@
 import { byId, make } from "../elements.js";
 import { credentials } from "../options.js";
 import { Actions } from "./actions.js";
+import { askFirst } from "./dialog.js";
 import { facts, shownState } from "./facts.js";
 import { Panels } from "./panels.js";
 import { ask, Follower } from "./server.js";
@@ -82,13 +83,24 @@ class Console {
       "Try again");
   }
 
+  /** Whoever is unwell by a questionnaire goes on by the experimenter's word alone. */
+  letGoOn() {
+    const { participant, unwell } = this.state;
+    return make("button", { type: "button", onclick: () => askFirst({
+      title: `Does ${participant} go on?`, text: `${unwell}.`, yes: "Goes on",
+      fields: [{ name: "reason", label: "Reason" }],
+    }, (given) => this.act("well", given)) }, "Goes on …");
+  }
+
   /** What is wrong with the session as a whole, as long as it is. */
   showBanners() {
-    const { trouble, step, disk, stopped, participant, wording } = this.state ?? {};
+    const { trouble, step, disk, stopped, participant, wording, unwell } = this.state ?? {};
+    const isUnwell = unwell && `${participant} waits: ${unwell}.`;
     const texts = [
       this.isLost && "The server does not answer. Trying again; a drive pauses by itself.",
       stopped && `${participant}: ${stopped}.`,
       trouble,
+      isUnwell,
       wording,
       faultOf(step?.drive),
       ...(step?.drive?.losses ?? []),
@@ -99,7 +111,7 @@ class Console {
     if (key === this.banners) return;
     this.banners = key;
     byId("banners").replaceChildren(...texts.map((text) => make("li", {}, text,
-      ...(text === trouble ? [this.retry()] : []))));
+      ...(text === trouble ? [this.retry()] : []), ...(text === isUnwell ? [this.letGoOn()] : []))));
   }
 }
 

@@ -34,6 +34,11 @@ export class DriveFrame {
     }
   }
 
+  /** Pictures a second that the drive is drawn with; undefined while nobody drives. */
+  get pictures() {
+    return this.drive && !this.isRefused ? this.page?.fps : undefined;
+  }
+
   /** Whether another page drives already. */
   get isRefused() {
     return Boolean(this.drive) && this.page?.state === "refused";

@@ -6,6 +6,8 @@ import { shownNumber } from "../elements.js";
 const SILENCE = 5;
 /** A record that was not written for longer while somebody drives stands still [s]. */
 const STILL = 2;
+/** Fewer pictures a second than this are too few to drive by. */
+const FEW = 30;
 /** Slower than this no time of arrival is told [m/s]. */
 const CRAWLING = 1;
 
@@ -86,6 +88,9 @@ function linkFact(state, drive, duration) {
   const isThere = state.page_seen !== null && state.page_seen < SILENCE;
   const needsPage = drive?.state === "running";
   const page = drive?.has_page ? "drives" : isThere ? "open" : "not open";
-  const isWell = needsPage ? drive.has_page : isThere;
-  return { name, value: page, unit: `${shownNumber(duration, 0)} ms`, kind: isWell ? "good" : "bad" };
+  const { pictures } = state;
+  const isDrawn = page === "drives" && Number.isFinite(pictures);
+  const isWell = needsPage ? drive.has_page && !(isDrawn && pictures < FEW) : isThere;
+  const unit = `${isDrawn ? `${pictures} fps, ` : ""}${shownNumber(duration, 0)} ms`;
+  return { name, value: page, unit, kind: isWell ? "good" : "bad" };
 }

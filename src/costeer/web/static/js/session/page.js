@@ -33,7 +33,7 @@ class Page {
     this.readyFor = "";
     this.isLost = false;
     this.stopping = new Stopping((deletes) => this.stop(deletes));
-    this.follower = new Follower(() => ask("api/session", this.query), {
+    this.follower = new Follower(() => ask("api/session", this.told()), {
       take: (state) => this.take(state),
       lost: () => this.lost(),
       pause: () => this.pause(),
@@ -44,6 +44,13 @@ class Page {
   pause() {
     const step = this.state?.step;
     return !step || this.isLost || CHANGING.has(step.kind) ? OFTEN : SELDOM;
+  }
+
+  /** Token, and how well the drive is drawn, which the console shows. */
+  told() {
+    const { pictures } = this.frame;
+    if (pictures === undefined) return this.query;
+    return `${this.query}${this.query ? "&" : "?"}pictures=${pictures.toFixed(0)}`;
   }
 
   lost() {
@@ -94,6 +101,7 @@ class Page {
       return "saving";
     }
     if (state === "running" || state === "paused") return "frame";
+    if (this.state.held) return "wait";
     if (this.readyFor !== me) return "brief";
     return state === "ready" ? "frame" : "wait";
   }
