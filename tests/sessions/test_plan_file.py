@@ -244,6 +244,26 @@ def test_a_plan_from_elsewhere_brings_its_scenarios(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        ("scenario: expressway-curves", True),
+        ("scenario: expressway-curves\nintention: indicator", False),
+        ("scenario: expressway", False),
+    ],
+)
+def test_who_plans_that_the_network_reads_bends_is_told(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], words: str, told: bool
+) -> None:
+    plan = tmp_path / "mine.yaml"
+    plan.write_text(
+        f"title: a\n{words}\nsteps: [{{kind: drive, condition: strong-normal}}]\n"
+    )
+    given = ["session", "new", str(tmp_path / "study"), "--plan", str(plan)]
+    assert main(given) == 0
+    assert ("has bends" in capsys.readouterr().err) == told
+
+
+@pytest.mark.parametrize(
     ("head", "said"),
     [
         ("title: ' '", "title is empty"),

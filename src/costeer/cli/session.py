@@ -164,12 +164,8 @@ def _new(folder: Path, plan: Path | None) -> None:
     from costeer.sessions.balance import balance
     from costeer.sessions.plan import PLAN_FILE
     from costeer.sessions.plan_file import LARGEST, paper_plan_text, parsed_plan
-    from costeer.sessions.plan_words import blank_notes, check_words
-    from costeer.sessions.scenarios import (
-        is_file_name,
-        scenario_notes,
-        scenario_texts,
-    )
+    from costeer.sessions.plan_words import check_words
+    from costeer.sessions.scenarios import is_file_name, scenario_texts
 
     text = paper_plan_text().encode() if plan is None else read_whole(plan, LARGEST)
     found = parsed_plan(text, str(plan or PLAN_FILE))
@@ -186,9 +182,7 @@ def _new(folder: Path, plan: Path | None) -> None:
             (folder / name).parent.mkdir(parents=True, exist_ok=True)
             write_text(folder / name, scenario)
     write_text(target, text.decode("utf-8"))
-    for told in (*scenario_notes(found, own), *blank_notes(found, folder)):
-        note(f"costeer: {told}")
-    _tell_of_bends(found, own)
+    _tell(found, own, folder)
     even = balance(found, range(1, found.participants + 1)).is_even
     told = "balanced" if even else "not balanced over so many"
     typer.echo(target)
@@ -198,12 +192,25 @@ def _new(folder: Path, plan: Path | None) -> None:
     note(f"costeer session run {folder}")
 
 
-def _tell_of_bends(plan: Plan, beside: Path) -> None:
-    """Say what the network of a plan makes of bends, if a scenario has any."""
-    from costeer.cli.plug_ins import tell_of_bends
-    from costeer.sessions.scenarios import scenario_beside, scenario_names
+def _tell(plan: Plan, own: Path, folder: Path) -> None:
+    """Notes on a plan.
 
-    driven = [scenario_beside(name, beside) for name in scenario_names(plan)]
+    Args:
+        plan: Of the study.
+        own: Where its scenarios lie.
+        folder: Of the study.
+    """
+    from costeer.cli.plug_ins import tell_of_bends
+    from costeer.sessions.plan_words import blank_notes
+    from costeer.sessions.scenarios import (
+        scenario_beside,
+        scenario_names,
+        scenario_notes,
+    )
+
+    for told in (*scenario_notes(plan, own), *blank_notes(plan, folder)):
+        note(f"costeer: {told}")
+    driven = [scenario_beside(name, own) for name in scenario_names(plan)]
     tell_of_bends(driven, plan.intention)
 
 
@@ -217,8 +224,7 @@ class _Lab(NamedTuple):
 
 def _run(folder: Path, lab: _Lab, where: tuple[str, int], browser: bool) -> None:
     """Serve both pages until Ctrl-C."""
-    from costeer.sessions.plan_words import blank_notes, check_words
-    from costeer.sessions.scenarios import scenario_notes
+    from costeer.sessions.plan_words import check_words
     from costeer.sessions.session import Session
     from costeer.study.locks import locked
     from costeer.web.security import access_for
@@ -233,10 +239,7 @@ def _run(folder: Path, lab: _Lab, where: tuple[str, int], browser: bool) -> None
             signal.signal(getattr(signal, name), _stop)
     session = Session(folder)
     check_words(session.plan, folder)
-    blanks = blank_notes(session.plan, folder)
-    for told in (*scenario_notes(session.plan, folder), *blanks):
-        note(f"costeer: {told}")
-    _tell_of_bends(session.plan, folder)
+    _tell(session.plan, folder, folder)
     _compile(session, devices)
     with locked(folder):  # a second one would take running drives for aborted
         desk = Desk(session, devices)
