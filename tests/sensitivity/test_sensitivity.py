@@ -13,9 +13,11 @@ from costeer.loop.scenario import PILOT_SEED, loop_parameters
 from costeer.scale.cluster import workers
 from costeer.scale.shard import Shard
 from costeer.sensitivity.factors import AIMS, FACTORS
+from costeer.sensitivity.figures import bins, separate
 from costeer.sensitivity.merge import merge_sensitivity
-from costeer.sensitivity.report import binned, write_report
+from costeer.sensitivity.report import _what_counts, idle, write_report
 from costeer.sensitivity.run import (
+    Index,
     Outcome,
     Point,
     Settings,
@@ -144,13 +146,88 @@ def test_a_report_has_every_measure_and_says_what_is_missing(tmp_path: Path) -> 
     assert "curves-swrr" not in drawn
 
 
+def test_repeats_of_a_draw_are_no_draws_of_their_own() -> None:
+    place, width = 3, len(FACTORS) + 2
+    drawn = points(SMALL)
+    x = np.array([point[place] for point in drawn])
+    alone, means = separate(place, x, np.arange(float(len(drawn))))
+    # Of each eleven samples nine have the first point's value, the fifth and the last
+    # that of the second.
+    assert len(alone) == 2 * SMALL.base
+    assert set(alone) == set(x)
+    assert means[0] == pytest.approx((sum(range(11)) - 4 - 10) / 9.0)
+    assert means[SMALL.base] == pytest.approx((4 + 10) / 2.0)
+    assert means[1] == means[0] + width
+
+
+def test_a_draw_without_a_value_is_missing_and_others_are_means_of_the_rest() -> None:
+    width = len(FACTORS) + 2
+    values = np.arange(2.0 * width)
+    values[[1, width - 1, width]] = np.nan
+    _, means = separate(0, np.zeros(2 * width), values)
+    # The second draw of the first eleven has the second and the last sample alone.
+    assert np.isnan(means[2])
+    assert means[1] == pytest.approx(np.mean(np.arange(width + 2, 2 * width - 1)))
+
+
 def test_bins_hold_the_means_of_what_is_in_them() -> None:
-    x = np.array([0.0, 0.1, 0.5, 1.0])
-    middle, mean, half = binned(x, np.array([1.0, 3.0, 5.0, 7.0]), 0.0, 1.0)
-    assert middle[0] == pytest.approx(1 / 16)
-    assert (mean[0], mean[4], mean[7]) == (2.0, 5.0, 7.0)
-    # Standard deviation of 1 and 3 is the root of 2, of their mean 1.
-    assert half[0] == pytest.approx(1.96)
+    place = [each.name for each in FACTORS].index("γ")
+    drawn = points(SMALL)
+    gamma = np.array([point[place] for point in drawn])
+    factor = FACTORS[place]
+    eighth = (factor.high - factor.low) / 8.0
+    in_first = gamma < factor.low + eighth
+    found = bins(place, drawn, np.where(in_first, 5.0, np.arange(len(drawn)) % 2))
+    assert found.middle[0] == pytest.approx(factor.low + eighth / 2.0)
+    # A Sobol sequence of 8 puts one point of each of its two sets into each eighth.
+    assert found.mean[0] == found.tenth[0] == found.ninetieth[0] == 5.0
+    assert found.half[0] == 0.0
+    assert (found.tenth[1:] >= 0.0).all()
+    assert (found.ninetieth[1:] <= 1.0).all()
+    number = np.arange(len(drawn))
+    found = bins(place, drawn, np.where(gamma == gamma[0], 1.0, 3.0))
+    at = int((gamma[0] - factor.low) / eighth)
+    # Draws of 1 and 3: standard deviation the root of 2, of their mean 1.
+    assert found.mean[at] == pytest.approx(2.0)
+    assert found.half[at] == pytest.approx(1.96)
+    assert number.size == 88
+
+
+def row(factor: str, total: float, half: float) -> Index:
+    return Index("made up", factor, 0.0, 0.0, total, half)
+
+
+def whole_rows(**totals: tuple[float, float]) -> list[Index]:
+    """Every factor with a total index and half its interval; 0.01 if not given."""
+    return [row(f.name, *totals.get(f.name, (0.01, 0.01))) for f in FACTORS]
+
+
+def test_the_page_names_only_factors_that_can_be_told_from_none() -> None:
+    said = _what_counts(whole_rows(δ=(0.3, 0.1), γ=(0.4, 0.41), λ=(0.2, 0.1)))
+    assert said == "δ 0.30 ± 0.10, then λ 0.20 ± 0.10 (total index)."
+    alone = _what_counts(whole_rows(δ=(0.3, 0.1)))
+    assert alone == "δ 0.30 ± 0.10 (total index)."
+    none = _what_counts(whole_rows(γ=(0.4, 0.41)))
+    assert none == "no factor can be told from none."
+
+
+def test_the_page_does_not_name_a_winner_that_the_samples_do_not_decide() -> None:
+    said = _what_counts(whole_rows(δ=(1.45, 1.84), γ=(0.9, 0.1)))
+    assert said.startswith("not decided by these samples: δ 1.45 ± 1.84")
+
+
+def test_a_factor_matters_for_none_if_its_interval_is_small_for_all_that_decide() -> (
+    None
+):
+    found: dict[str, list[Index] | str] = {
+        "one": whole_rows(δ=(0.3, 0.1), λ=(0.02, 0.02)),
+        "two": whole_rows(γ=(0.04, 0.02), λ=(0.02, 0.04)),
+        "undecided": whole_rows(strength=(0.9, 0.9)),
+        "missing": "all samples have the same value",
+    }
+    rest = [f.name for f in FACTORS if f.name not in {"δ", "γ", "λ"}]
+    assert idle(found) == rest
+    assert idle({"undecided": whole_rows(strength=(0.9, 0.9))}) == []
 
 
 @pytest.mark.parametrize(

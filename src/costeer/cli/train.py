@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated, NamedTuple
 import typer
 
 from costeer.cli.adapt import SHIPPED, Adapting, adapt_to_people, start_network
+from costeer.cli.baselines import fit_baselines
 from costeer.cli.bracket_check import check_form
 from costeer.cli.reading import (
     AS_FOUND,
@@ -158,8 +159,9 @@ def train(
     """Fit the intention network on records.
 
     The drivers are split into training, validation and test drivers; the last judge the
-    result. With --start all recordings are used for training and nothing is judged.
-    Needs the extra `train` (JAX, Optax, scikit-learn).
+    result. Baselines that are done are kept beside --out: the same command goes on
+    where it was stopped. With --start all recordings are used for training and nothing
+    is judged. Needs the extra `train` (JAX, Optax, scikit-learn).
 
     Example:
         costeer train --simulate 60 --out out/intention.npz
@@ -184,7 +186,7 @@ def train(
     if fit == "baselines":
         if check_kilometres:
             raise ValueError("--check-kilometres is for a network; leave out --fit")
-        _fit_baselines(source, out)
+        fit_baselines(_recordings(source), source.seed, _made_from(source), out)
         return
     if start is not None:
         _fine_tune(source, start, steps, out)
@@ -300,29 +302,18 @@ def _fit_network(
     print_evaluation(network.facts["test"], "Drivers without part in the training")
 
 
-def _fit_baselines(source: Source, out: Path) -> None:
-    """Fit the rivals of the network on the drivers that it learns from."""
-    from costeer.cli.console import note, print_table, progress
-    from costeer.intention.predictors.store import save_baselines
-    from costeer.training.dataset import DatasetParameters, shown, split_by_driver
-    from costeer.training.predictors.baselines import (
-        FITTED,
-        train_baselines,
-        with_paper_network,
-    )
-    from costeer.training.predictors.paper_gru import FIT, fit_paper_network
+def _made_from(source: Source) -> dict[str, str]:
+    """What decides the fits besides what the recordings hold, by name."""
+    from costeer.scale.worker import sources_of
 
-    split = split_by_driver(_recordings(source), source.seed, DatasetParameters())
-    wider = split._replace(training=shown(split.training))
-    with progress("baselines", len(FITTED)) as advance:
-        found = train_baselines(wider, source.seed, advance)
-    with progress("training steps of the paper's network", FIT.num_steps) as advance:
-        paper = fit_paper_network(split, source.seed, advance)
-    found = with_paper_network(found, paper.variants["full"], paper.facts)
-    save_baselines(out, found)
-    note(f"written: {out}")
-    rows = [[name, ", ".join(one.variants)] for name, one in found.items()]
-    print_table(["predictor", "variants"], rows, title="Fitted")
+    package = Path(__file__).parents[1]
+    rooms = ("training", "intention")
+    return {
+        "--seed": str(source.seed),
+        "--simulate": str(source.simulate),
+        "--dataset": str(source.dataset),
+        "source of the fits": " ".join(sources_of(package / room) for room in rooms),
+    }
 
 
 def _fine_tune(source: Source, start: str, steps: int | None, out: Path) -> None:

@@ -2,12 +2,19 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+from typing import Any
+
 import numpy as np
 import pytest
 
 from costeer.intention.gru import random_weights
 from costeer.intention.predictors.registry import fitted_predictor
-from costeer.intention.predictors.store import baselines_hash
+from costeer.intention.predictors.store import (
+    Baseline,
+    baselines_hash,
+    save_baselines,
+)
 from costeer.training.dataset import Split
 from costeer.training.predictors import baselines
 from costeer.training.predictors.baselines import (
@@ -22,6 +29,12 @@ from costeer.training.predictors.crossing_time import (
 from costeer.training.predictors.descent import DescentParameters
 from costeer.training.predictors.head_only import HeadParameters
 from costeer.training.predictors.judge import predictor_scores
+from costeer.training.predictors.kept import (
+    Kept,
+    kept_beside,
+    let_go,
+    recordings_hash,
+)
 from costeer.training.predictors.line_time import LineTimeParameters
 from costeer.training.predictors.logistic import LogisticParameters
 from costeer.training.predictors.support_vectors import MachineParameters
@@ -104,3 +117,60 @@ def test_a_predictor_that_says_nothing_has_no_scores() -> None:
     network = with_paper_network({}, random_weights(3, seed=1), {})["paper-gru"]
     silent = [one._replace(absent=("head_yaw",)) for one in RECORDINGS[:1]]
     assert predictor_scores(fitted_predictor("paper-gru", network), silent) == {}
+
+
+MADE_FROM = {"--seed": "1", "content of the recordings": recordings_hash(SPLIT)}
+
+
+@pytest.mark.slow  # fits three times
+def test_a_stop_loses_no_fit_that_is_done(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    names = ("line-time", "head-only")
+    out = tmp_path / "fits.npz"
+    fitted, asked = baselines._fitted, []
+
+    def stopped(name: str, *rest: Any) -> Baseline:
+        asked.append(name)
+        if name == "head-only" and len(asked) == 2:
+            raise KeyboardInterrupt
+        return fitted(name, *rest)
+
+    def fit(kept: Kept | None) -> dict[str, Baseline]:
+        return train_baselines(SPLIT, 1, None, names, SHORTER, kept)
+
+    monkeypatch.setattr(baselines, "_fitted", stopped)
+    with pytest.raises(KeyboardInterrupt):
+        fit(kept_beside(out, MADE_FROM))
+    assert set(kept_beside(out, MADE_FROM).done) == {"line-time"}
+    found = fit(kept_beside(out, MADE_FROM))
+    assert asked == ["line-time", "head-only", "head-only"]
+    save_baselines(out, found)
+    save_baselines(tmp_path / "whole.npz", fit(None))
+    assert out.read_bytes() == (tmp_path / "whole.npz").read_bytes()
+    assert list(kept_beside(out, MADE_FROM).done) == list(names)
+    let_go(kept_beside(out, MADE_FROM))
+    assert sorted(file.name for file in tmp_path.iterdir()) == ["fits.npz", "whole.npz"]
+
+
+def test_fits_of_something_else_are_refused_and_stay(tmp_path: Path) -> None:
+    out = tmp_path / "fits.npz"
+    kept = kept_beside(out, MADE_FROM)
+    found = train_baselines(SPLIT, 1, names=("line-time",), parameters=TINY, kept=kept)
+    changed = {"--seed": "2", "content of the recordings": "another"}
+    with pytest.raises(ValueError, match="with another --seed, content of the rec"):
+        kept_beside(out, changed)
+    again = kept_beside(out, MADE_FROM).done
+    assert baselines_hash(again) == baselines_hash(found)
+
+
+def test_recordings_are_told_apart_by_what_they_hold() -> None:
+    first = SPLIT.training[0]
+    other = first._replace(features=first.features + 1e-12)
+    same = first._replace(features=first.features.copy())
+    rest = SPLIT.training[1:]
+    with_other = recordings_hash(SPLIT._replace(training=[other, *rest]))
+    with_same = recordings_hash(SPLIT._replace(training=[same, *rest]))
+    moved = SPLIT._replace(training=rest, validation=[first, *SPLIT.validation])
+    assert with_same == recordings_hash(SPLIT)
+    assert len({with_same, with_other, recordings_hash(moved)}) == 3

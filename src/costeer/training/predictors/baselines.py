@@ -24,6 +24,7 @@ from costeer.training.predictors import (
     support_vectors,
 )
 from costeer.training.predictors.judge import predictor_scores
+from costeer.training.predictors.kept import Kept, keep
 from costeer.training.predictors.samples import (
     Answers,
     FeatureScaling,
@@ -83,6 +84,7 @@ def train_baselines(
     progress: Callable[[int], None] | None = None,
     names: Sequence[str] = FITTED,
     parameters: BaselineParameters = DEFAULTS,
+    kept: Kept | None = None,
 ) -> dict[str, Baseline]:
     """Fit the rivals of the network.
 
@@ -92,6 +94,8 @@ def train_baselines(
         progress: Told 1 after each predictor.
         names: Some of `FITTED`.
         parameters: Everything else.
+        kept: Where each fit is put when it is done, and those that need none; a kept
+            fit must be of the same split, seed and parameters.
 
     Returns:
         By name, in the order of spec section 9, with facts: drivers, seed, what was
@@ -103,11 +107,18 @@ def train_baselines(
     unknown = [name for name in names if name not in FITTED]
     if unknown:
         raise ValueError(f"{unknown[0]!r} is none of the fits {', '.join(FITTED)}")
-    shared = _summaries(split, seed, parameters, names)
+    there = {} if kept is None else kept.done
+    missing = [name for name in names if name not in there]
+    shared = _summaries(split, seed, parameters, missing)
     found = {}
     for name in (name for name in FITTED if name in names):
-        fitted = _fitted(name, split, shared, seed, parameters)
-        found[name] = _with_facts(name, fitted, split, seed)
+        if name in there:
+            found[name] = there[name]
+        else:
+            fitted = _fitted(name, split, shared, seed, parameters)
+            found[name] = _with_facts(name, fitted, split, seed)
+            if kept is not None:
+                keep(kept, name, found[name])
         if progress:
             progress(1)
     return found
