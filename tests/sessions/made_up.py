@@ -43,6 +43,7 @@ FACTS = {
     "wheel_calibration": {"inertia": 0.05},
     "head": None,
     "checks": [{"name": "Free space", "well": True, "told": "", "utc": ""}],
+    "frame_rate": 58,
 }
 
 

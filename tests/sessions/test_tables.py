@@ -152,6 +152,7 @@ def test_devices_and_calibration_stand_beside_each_attempt(written: Path) -> Non
     assert (first["kind"], first["state"]) == ("practise", "finished")
     assert first["wheel"] == "Simucube 2"
     assert first["wheel_calibration"] == '{"inertia": 0.05}'
+    assert first["frame_rate"] == "58"
     aborted = [row for row in found if row["state"] == "aborted"]
     assert [row["participant"] for row in aborted] == ["P03"]
 

@@ -162,6 +162,12 @@ FIELDS: dict[str, tuple[Field, ...]] = {
         Field("wheel_calibration", "of the wheel, from its self-test", range="JSON"),
         Field("head", "kind of head tracker; empty without one"),
         Field("checks", "last check of the devices before it", range="JSON"),
+        Field(
+            "frame_rate",
+            "pictures that the participant's page drew before it; empty if not told",
+            "1/s",
+            range="0 ..."
+        ),
         Field("latency", "from device to page, as far as it was measured"),
     ),
 }

@@ -105,7 +105,7 @@ def attempt_rows(session: Session) -> list[Cells]:
     """Rows of `attempts.csv`, practice and aborted ones among them."""
     slots = {row["participant"]: row["slot"] for row in session.people()}
     steps = {who: {s.id: s for s in session.steps_of(who)} for who in slots}
-    facts = ("costeer", "git_revision", "input", "wheel", "head")
+    facts = ("costeer", "git_revision", "input", "wheel", "head", "frame_rate")
     rows = []
     for each in listed_attempts(session.store):
         known = each["facts"]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 import time
 from pathlib import Path
@@ -133,5 +134,6 @@ def check_attempts(folder: Path) -> None:
         *("emergency stop", "the session was closed"),
     ]
     assert {row["state"] for row in rows} == {"aborted"}
+    assert json.loads(rows[1]["facts"])["frame_rate"] is not None  # of the first drive
     kept = (folder / "aborted").glob("*-attempt?.parquet")
     assert len(list(kept)) == 2

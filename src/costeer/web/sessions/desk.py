@@ -279,7 +279,8 @@ class Desk:
         if self._drive is not None and self._driven is not None:
             if self._driven[:2] != (who, step.id) or self._drive.is_ending:
                 return
-            facts = facts_of(self.devices, self._drive.setup, self.checked)
+            setup, checked = self._drive.setup, self.checked
+            facts = facts_of(self.devices, setup, checked, self.pictures)
             self.attempts.start(who, step.id, facts)
             self._is_begun = True
 

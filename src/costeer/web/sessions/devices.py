@@ -36,7 +36,10 @@ class Devices(NamedTuple):
 
 
 def facts_of(
-    devices: Devices, setup: DriveSetup, checked: Sequence[dict[str, Any]]
+    devices: Devices,
+    setup: DriveSetup,
+    checked: Sequence[dict[str, Any]],
+    frame_rate: int | None,
 ) -> dict[str, Any]:
     """What a reader of the methods section asks of a drive.
 
@@ -44,6 +47,7 @@ def facts_of(
         devices: Of the lab.
         setup: Of the drive.
         checked: What the last look at the devices found.
+        frame_rate: Of the page before the drive, None if it has told nothing [1/s].
     """
     calibration = devices.calibration
     return {
@@ -54,4 +58,5 @@ def facts_of(
         "wheel_calibration": None if calibration is None else calibration._asdict(),
         "head": None if setup.head is None else setup.head.tracker.kind,
         "checks": list(checked),
+        "frame_rate": frame_rate,
     }
