@@ -166,7 +166,7 @@ FIELDS: dict[str, tuple[Field, ...]] = {
             "frame_rate",
             "pictures that the participant's page drew before it; empty if not told",
             "1/s",
-            range="0 ..."
+            range="0 ...",
         ),
         Field("latency", "from device to page, as far as it was measured"),
     ),
