@@ -168,6 +168,7 @@ def test_too_many_actors_are_counted() -> None:
 
 def test_cars_in_one_place_are_refused() -> None:
     beside = SOUND.replace("    lane: 0\n    at: 500", "    lane: 1\n    at: 3")
+    beside = beside.replace("{gap: 32}, lane: 1", "{gap: 32}, lane: 0")
     with pytest.raises(ValueError, match=r"line 13: first and the driven car"):
         parsed(beside, "bend.yaml")
     # Two cars of 1.8 m fit beside each other in a lane of 3.5 m.
@@ -285,7 +286,7 @@ def test_length_and_speed_are_the_scenario_s_unless_given() -> None:
     assert (own.length, own.speed) == (3000.0, 80.0 / 3.6)
     asked = chosen("cut-in", 1000.0, 25.0)
     assert (asked.length, asked.speed) == (1000.0, 25.0)
-    assert "second (1500 m)" in asked.notes[0]
+    assert "second (1575 m)" in asked.notes[0]
     with pytest.raises(ValueError, match="too tight for 144 km/h"):
         chosen("expressway-curves", None, 40.0)
 

@@ -130,6 +130,20 @@ def test_a_slow_end_of_a_lane_change_is_no_departure() -> None:
     assert departures(columns) == []
 
 
+@pytest.mark.parametrize(("side", "number"), [(RIGHT, 0), (LEFT, 1)])
+def test_who_is_over_a_line_at_the_end_may_be_changing_lanes(
+    side: int, number: int
+) -> None:
+    # The left lane of two: to the right there is a lane, to the left the verge.
+    columns = changes([])
+    time = columns["time"]
+    columns["lateral_position"] = side * np.clip(0.2 * (time - time[-1] + 5.0), 0, 1)
+    assert len(departures(columns)) == number
+    back = {name: np.append(each, each[:1]) for name, each in columns.items()}
+    back["time"][-1] = 2.0 * time[-1] - time[-2]
+    assert len(departures(back)) == 1
+
+
 def test_a_lane_change_cut_by_the_record_is_no_departure() -> None:
     # Crosses at 14 s and would settle at 18 s; the record ends, or starts, between.
     columns = changes([(10.0, 8.0, RIGHT)])

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 import os
+import warnings
 from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, TypeAlias
 
@@ -29,6 +30,7 @@ from costeer.records.columns import TrialRecord
 from costeer.scale.shard import WHOLE, parse_shard
 from costeer.scenarios.definition import Scenario
 from costeer.scenarios.reading import chosen
+from costeer.scenarios.unmet import unmet
 from costeer.study.configuration import StudySettings
 from costeer.study.run import Scale, StudyOutcome, full_report, run_study
 from costeer.training.thresholds import with_threshold
@@ -141,9 +143,11 @@ def simulate(
         "mistakes": (mistakes,) if isinstance(mistakes, str) else tuple(mistakes),
         "trigger_times": tuple(trigger_times),
     }
-    return simulate_trial(
-        TrialSetup(**{n: given[n] for n in TrialSetup._fields}), engine
-    )
+    setup = TrialSetup(**{name: given[name] for name in TrialSetup._fields})
+    record = simulate_trial(setup, engine)
+    for each in (*course.notes, *unmet(record)):
+        warnings.warn(each, stacklevel=2)
+    return record
 
 
 def _values(

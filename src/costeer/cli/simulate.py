@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from costeer.cli import plug_ins
-from costeer.cli.console import note
+from costeer.cli.console import hold_notes, note, release_notes
 from costeer.cli.trial_summary import print_summary
 
 if TYPE_CHECKING:
@@ -88,6 +88,7 @@ def simulate(
     from costeer.loop.scenario import TrialSetup
     from costeer.methods.conditions import condition as condition_named
 
+    hold_notes()
     course = plug_ins.chosen_scenario(scenario, length, speed)
     setup = TrialSetup(
         participant=participant,
@@ -130,6 +131,7 @@ def simulate_to_file(out: Path, setup: TrialSetup, engine: str = "numba") -> Non
     from costeer.loop.scenario import check_setup, is_assisted
     from costeer.loop.trial import simulate_trial
     from costeer.records.record import write_record
+    from costeer.scenarios.unmet import unmet
 
     check_setup(setup)
     if setup.trigger_times and not is_assisted(setup):
@@ -139,11 +141,14 @@ def simulate_to_file(out: Path, setup: TrialSetup, engine: str = "numba") -> Non
         )
     refuse_to_replace(out)
     refuse_other_names(out)
+    release_notes()
     out.parent.mkdir(parents=True, exist_ok=True)
     record = simulate_trial(setup, engine)
     write_record(out, record)
     print_summary(record)
     _tell_late_triggers(setup, float(record.columns["time"][-1]))
+    for line in unmet(record):
+        note(f"costeer: {line}")
     typer.echo(out)
 
 

@@ -18,6 +18,7 @@ from costeer.scenarios.definition import (
     KINDS,
     SIDES,
     Bent,
+    Event,
     Road,
     Scenario,
     curvature_of,
@@ -217,33 +218,49 @@ def _of_events(scenario: Scenario) -> Iterator[Fault]:
             yield Fault(
                 ("events", k, "at"),
                 f"the {event.kind} at {event.at:g} m can never happen on a road of "
-                f"{scenario.road.length:g} m",
+                f"{scenario.road.length:g} m; give less, or a longer road",
             )
-        if event.kind == "gust" and event.force == 0.0:
-            yield Fault(("events", k), "a gust has no force; give it in newtons")
+        yield from _of_kind(event, ("events", k))
     for one, after in pairwise(order):
         first, second = scenario.events[one], scenario.events[after]
         if second.at < first.at + first.length:
             yield Fault(
                 ("events", after, "at"),
                 f"the {second.kind} at {second.at:g} m begins before the "
-                f"{first.kind} at {first.at:g} m has ended",
+                f"{first.kind} at {first.at:g} m has ended; move one of them",
             )
-    yield from _of_first_change(scenario, order)
+    yield from _of_changes(scenario)
 
 
-def _of_first_change(scenario: Scenario, order: Sequence[int]) -> Iterator[Fault]:
-    """A lane change into no lane: with nobody to overtake one is in the usual lane."""
-    changes = [k for k in order if scenario.events[k].kind == "lane-change"]
-    if not changes or scenario.overtaking.cars or scenario.stream.cars:
+def _of_kind(event: Event, at: Place) -> Iterator[Fault]:
+    """A gust has a force, a lane change a side, and nothing else has either."""
+    if event.kind == "gust" and event.force == 0.0:
+        yield Fault(at, "a gust has no force; give it in newtons")
+    for name, kind in (("force", "gust"), ("side", "lane-change")):
+        if event.kind != kind and getattr(event, name):
+            told = f"a {event.kind} has no {name}; leave it out, or make it a {kind}"
+            yield Fault((*at, name), told)
+
+
+def _of_changes(scenario: Scenario) -> Iterator[Fault]:
+    """Lane changes that nobody makes: with nobody about one is in the usual lane.
+
+    A driver who was asked to leave it goes back when the stretch has ended.
+    """
+    if scenario.overtaking.cars or scenario.stream.cars or scenario.actors:
         return
-    event, home = scenario.events[changes[0]], home_lane(scenario.road)
-    if not 0 <= home + SIDES[event.side] < scenario.road.lanes:
-        yield Fault(
-            ("events", changes[0], "side"),
-            f"the lane-change at {event.at:g} m can never happen: there is no lane to "
-            f"the {event.side} of the one that is driven in",
-        )
+    home = home_lane(scenario.road)
+    for k, event in enumerate(scenario.events):
+        if event.kind != "lane-change" or event.side not in SIDES:
+            continue
+        if not 0 <= home + SIDES[event.side] < scenario.road.lanes:
+            yield Fault(
+                ("events", k, "side"),
+                f"the lane-change at {event.at:g} m can never happen: there is no lane "
+                f"to the {event.side} of the one that is driven in; to stay longer in "
+                "another lane and go back, give the lane-change that leads there a "
+                "greater length",
+            )
 
 
 def _of_zones(scenario: Scenario) -> Iterator[Fault]:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import math
+from collections.abc import Iterator, Mapping
 from functools import cache, lru_cache
 from importlib.resources import files
 from pathlib import Path
@@ -114,11 +115,8 @@ def chosen(given: str | Scenario, length: float | None, speed: float | None) -> 
     scenario = scenario_named(given, speed)
     own = scenario.road.length
     driven = own if length is None else length
-    places = [(f"the {each.kind}", each.at) for each in scenario.events]
-    places += [(each.name, each.at) for each in scenario.actors]
-    places += [(f"zone {each.name}", each.end) for each in scenario.zones]
-    beyond = [f"{name} ({at:g} m)" for name, at in places if at > driven]
-    notes = []
+    beyond = [f"{name} ({at:g} m)" for name, at in _places(scenario) if at > driven]
+    notes = _doubts(scenario)
     if beyond:
         told = f"beyond {driven:g} m of scenario {scenario.name} lie"
         notes.append(f"{told} {', '.join(beyond[:3])}; make it longer to meet them")
@@ -127,6 +125,29 @@ def chosen(given: str | Scenario, length: float | None, speed: float | None) -> 
         notes.append(f"{told} ends")
     fast = speed_of(scenario.speed) if speed is None else speed
     return Chosen(scenario, driven, fast, tuple(notes))
+
+
+def _doubts(scenario: Scenario) -> list[str]:
+    """What looks wrong in a scenario and can be driven all the same."""
+    limit = scenario.road.speed_limit
+    if not limit or speed_of(limit) >= speed_of(scenario.speed) - 1e-9:
+        return []
+    told = f"scenario {scenario.name} suggests {scenario.speed} where signs allow"
+    return [f"{told} {limit}"]
+
+
+def _places(scenario: Scenario) -> Iterator[tuple[str, float]]:
+    """What happens along the road, and how far one must drive to meet it [m]."""
+    for event in scenario.events:
+        yield f"the {event.kind}", event.at
+    for actor in scenario.actors:
+        appears = math.nan if actor.appears is None else actor.appears.place
+        yield actor.name, max(actor.at, 0.0 if math.isnan(appears) else appears)
+        for order in actor.orders:
+            if not math.isnan(order.when.place):
+                yield f"an order of {actor.name}", order.when.place
+    for zone in scenario.zones:
+        yield f"zone {zone.name}", zone.end
 
 
 def read_scenario(path: Path) -> Scenario:

@@ -17,7 +17,7 @@ from costeer.study.definitions import (
     runs,
     unknown,
 )
-from costeer.study.lanes import centre, from_centre, home_lane, keeps_home
+from costeer.study.lanes import centre, from_centre, home_lane, keeps_home, lanes
 from costeer.study.rounding import rounded_rate, rounding
 from costeer.study.segments import DroppedChange, LaneChange, Segments
 
@@ -126,7 +126,8 @@ def lane_departures(
     A lane change lasts here from the first to the last of its yaw and its lateral
     speed, so that a slow approach to the new lane's centre is no departure; one that
     the start or the end of the record cuts is a lane change here too. Crossing the
-    line and back is a departure.
+    line and back is a departure; with a wheel over a line between lanes when the
+    record ends, nobody knows whether it would have been one, and it is none.
     """
     over = _off_centre(columns, parameters) > (
         (parameters.lane_width - parameters.car_width) / 2.0
@@ -144,7 +145,17 @@ def lane_departures(
         if span is not None:
             start, end = min(start, span[0]), max(end, span[1])
         over[within(columns["time"], start, end)] = False
-    return tuple(runs(over))
+    found = list(runs(over))
+    if found and found[-1].stop == over.size and _towards_a_lane(columns, parameters):
+        found.pop()
+    return tuple(found)
+
+
+def _towards_a_lane(columns: Columns, parameters: MeasureParameters) -> bool:
+    """Whether there is a lane on the side to which the car is when the record ends."""
+    last = columns["lateral_position"][-1:]
+    lane, side = lanes(last, parameters), np.sign(from_centre(last, parameters))
+    return bool(((lane + side >= 0) & (lane + side < parameters.num_lanes)).all())
 
 
 def _is_cut(dropped: DroppedChange) -> bool:
