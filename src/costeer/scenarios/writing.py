@@ -95,11 +95,11 @@ overtaking: {cars: 1, first: FIRST, spacing: 2000, ahead: 70}
 # actors:
 #   - name: cuts in
 #     lane: 0
-#     at: 400
-#     speed: 70 km/h
+#     at: 100
+#     speed: 68 km/h
 #     orders:
-#       - {when: {gap: 32}, lane: 1}
-#       - {when: {gap: 28}, speed: 55 km/h, rate: 2}
+#       - {when: {gap: 40}, lane: 1}
+#       - {when: {gap: 32}, speed: 55 km/h, rate: 2}
 #   - {name: lost load, kind: obstacle, lane: 1, appears: {place: 900}, headway: 2.5}
 
 # What happens on stretches: gust (force in newtons), head-lost, lane-change (side).
