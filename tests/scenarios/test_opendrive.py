@@ -136,6 +136,30 @@ def test_what_is_not_modelled_is_named_with_its_line(tmp_path: Path) -> None:
         assert told in notes
 
 
+@pytest.mark.parametrize(
+    ("said", "told"),
+    [
+        ('length="500"', ""),
+        ('length="500.4"', ""),
+        ('length="600"', "has the length 600 m; its geometry of 500 m is read"),
+        ("", "has no length; its geometry of 500 m is read"),
+    ],
+)
+def test_the_road_is_as_long_as_its_geometry(
+    said: str, told: str, tmp_path: Path
+) -> None:
+    text = road(straight()).replace('length="500"', said, 1)
+    read = read_road(write(tmp_path, text))
+    assert read.road.length == 500.0
+    assert [f"the road {told}" in each for each in read.notes] == [True] * bool(told)
+
+
+def test_a_stretch_without_geometry_is_told(tmp_path: Path) -> None:
+    plan = straight(250) + "\n" + LINE.format(s=260, x=260, length=240)
+    notes = read_road(write(tmp_path, road(plan))).notes
+    assert any("line 6: geometry ends at s = 250 m, the next" in n for n in notes)
+
+
 SPEED = '<type s="0" type="rural">\n<speed max="{}" unit="{}"/></type>\n'
 
 
@@ -176,6 +200,17 @@ REFUSED = [
     (road(straight(), TWO, 'rule="XYZ"'), 4, "rule is 'XYZ'"),
     (road(straight(), TWO, inside=SPEED.format(5, "knots")), 9, "'knots' is no unit"),
     (road(straight(), TWO.replace('id="-1"', 'id="1"')), 9, "left is positive"),
+    (road(geometry('<arc curvature="-5"/>', 9)), 6, "a radius of 0.2 m; give 5 m"),
+    (
+        road(straight(), section(right=lane(-1, -3) + lane(-2))),
+        9,
+        "lane -1 is -3 m wide at s = 0 m; give 0 or more",
+    ),
+    (
+        road(straight()).replace('length="500"', 'length="nan"'),
+        4,
+        "length of <road> is 'nan'",
+    ),
     (road(straight()) + "<include file='x'/>", 12, "<include> is not read"),
     ("<road", 4, "no XML"),
     ("", 2, "no road"),

@@ -11,6 +11,7 @@ import yaml
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
+import costeer
 from costeer.scenarios.definition import Bent, Road, Scenario, speed_of
 from costeer.scenarios.reading import (
     checked,
@@ -57,7 +58,7 @@ WRONG = [
     ("speed: 80 km/h", "speed: fast", 2, "is no speed"),
     ("speed: 80 km/h", "speed: 20 km/h", 2, "give 43.2 to 111.6 km/h"),
     ("name: bend", "name: Bend!", 1, "small letters"),
-    ("size: 0.3", "size: .nan", 23, "give a number from -3 to 3"),
+    ("size: 0.3", "size: .nan", 23, ".nan is no number"),
     ("size: 0.3", "size: 9", 23, "give a number from -3 to 3"),
     ("torque-bias, size: 0.3", "wrong-side", 23, "needs three lanes or more"),
     ("torque-bias, size: 0.3", "head-lost, size: 1", 23, "has no size"),
@@ -65,7 +66,7 @@ WRONG = [
     ("lanes: 2", "lanes: 1", 5, "from 2 to 6"),
     ("lanes: 2", "lanes: 2.5", 5, "a whole number"),
     ("lanes: 2", "lanes: " + "9" * 500, 5, "from 2 to 6"),
-    ("length: 3000", "length: .nan", 4, "length is nan"),
+    ("length: 3000", "length: .nan", 4, ".nan is no number"),
     ("length: 3000", "length: .inf", 4, "length is inf"),
     ("length: 3000", "length: yes", 4, "give a number"),
     ("length: 3000", "length: 3000, length: 1", 4, ""),
@@ -78,7 +79,7 @@ WRONG = [
     ("first: 500", "first: -1", 9, "from 0 to 200000"),
     ("lane: 0", "lane: 2", 12, "lane 2, which is not there; give 0 (right)"),
     ("    at: 500", "    at: 5000", 13, "outside the road of 3000 m"),
-    ("    at: 500", "    at: 500\n    offset: .nan", 14, "offset is nan"),
+    ("    at: 500", "    at: 500\n    offset: .nan", 14, ".nan is no number"),
     ("    at: 500", "    at: 500\n    length: -4", 14, "length is -4"),
     ("speed: 70 km/h", "speed: 70 mpg", 14, "is no speed"),
     ("{gap: 32}", "{gap: 32, time: 3}", 16, "a moment says time and gap"),
@@ -105,6 +106,14 @@ WRONG = [
     ("name: bend", "name: bend: er", 1, "a colon too many"),
     ("name: bend", "name: be\0nd", 1, "a control character"),
     ("name: bend", 'name: bend\nabout: "a\\x07b"', 2, "control characters"),
+    ("length: 3000", "length: 03000", 4, "03000 is read as 1536; write the number"),
+    ("length: 3000", "length: 50:00", 4, "50:00 is read as 3000; write the number"),
+    ("length: 3000", "length: 0xBB8", 4, "0xBB8 is read as 3000; write the number"),
+    ("at: 1300", "at: 21:40.0", 19, "21:40.0 is read as 1300.0; write the number"),
+    ("radius: 600", "radius: .NaN", 8, ".NaN is no number"),
+    ("headway: 2.5", "headway: .nan", 17, ".nan is no number"),
+    ("name: bend", "name: .nan", 1, ".nan is no number"),
+    ("name: bend", "name: 0100", 1, "or put it in quotes"),
     ("  lanes: 2", "  lanes:", 5, "lanes has no value"),
     ("length: 3000", "length: 3e3", 4, "a number without an exponent"),
     ("name: bend", "name: &n bend\nabout: *n", 2, "references are not read"),
@@ -212,6 +221,49 @@ def test_what_is_no_scenario_is_refused_in_one_line(text: bytes) -> None:
     with pytest.raises(ValueError, match=r"x\.yaml") as refused:
         parsed(text, "x.yaml")
     assert len(str(refused.value)) < 600
+
+
+def test_an_empty_file_is_called_empty() -> None:
+    for text in ("", "# nothing but this\n"):
+        with pytest.raises(ValueError, match=r"^x\.yaml is empty; give names"):
+            parsed(text, "x.yaml")
+
+
+@pytest.mark.parametrize("given", [None, 5, {}, [], b"expressway", 1.5])
+def test_what_is_no_scenario_at_all_is_named(given: object, tmp_path: Path) -> None:
+    told = f"scenario is {given!r}; give a name, such as expressway, a file"
+    for call in (
+        lambda: scenario_named(given),  # type: ignore[arg-type]  # on purpose
+        lambda: costeer.simulate(scenario=given),  # type: ignore[arg-type]
+        lambda: costeer.study(tmp_path / "a", scenario=given),  # type: ignore[arg-type]
+    ):
+        with pytest.raises(ValueError, match=f"^{re.escape(told)}"):
+            call()
+
+
+def test_lists_do_as_tuples_and_a_path_as_its_text(tmp_path: Path) -> None:
+    bent = [Bent(100.0), Bent(200.0, 600.0)]
+    road = Road(length=1000.0, stations=bent)  # type: ignore[arg-type]  # a list
+    mine = Scenario("mine", road=road, zones=[])  # type: ignore[arg-type]  # as above
+    assert chosen(mine, None, None).scenario.road.stations == tuple(bent)
+    file = tmp_path / "mine.yaml"
+    file.write_text(scenario_text(mine), encoding="utf-8")
+    record = costeer.simulate("manual", scenario=file, length=120.0, intention="off")
+    driven = scenario_of(record.metadata["scenario"])  # type: ignore[arg-type]  # JSON
+    assert plain(driven) == plain(checked(mine))
+
+
+def test_a_curvature_that_jumps_is_told() -> None:
+    # From 170 m to the left to 170 m to the right is 0.01176 1/m; at 72 km/h and
+    # 25 m/s³ that takes 20³ x 0.01176 / 25 m = 3.8 m.
+    def told(apart: float) -> tuple[str, ...]:
+        stations = (Bent(100.0, 170.0), Bent(100.0 + apart, -170.0))
+        road = Road(length=1000.0, stations=stations)
+        return chosen(Scenario("a", speed="72 km/h", road=road), None, None).notes
+
+    assert "stations 3.8 m apart" in told(0.001)[0]
+    assert len(told(3.7)) == 1
+    assert told(3.8) == ()
 
 
 def test_a_huge_file_is_not_read(tmp_path: Path) -> None:

@@ -7,6 +7,7 @@ further named tuples. A line number is told where the file's text is at hand.
 from __future__ import annotations
 
 import difflib
+import re
 import types
 from collections.abc import Mapping
 from pathlib import Path
@@ -55,6 +56,28 @@ def _word(loader: Any, node: Any) -> Any:
     return loader.construct_yaml_str(node)
 
 
+def _number(loader: Any, node: Any) -> Any:
+    """A number as people write it, none of those that YAML 1.1 alone knows.
+
+    There 0100 is 64 and 1:30 is 90; later versions read them as text or as 100.
+    """
+    kind = "int" if node.tag.endswith("int") else "float"
+    value = getattr(loader, f"construct_yaml_{kind}")(node)
+    if value == value and not _ODD.fullmatch(node.value):
+        return value
+    told = f"line {node.start_mark.line + 1}: {node.value}"
+    if value != value:
+        raise yaml.YAMLError(f"{told} is no number; give one, or leave it out")
+    raise yaml.YAMLError(
+        f"{told} is read as {value}; write the number that is meant, or put it in quotes"
+    )
+
+
+_ODD = re.compile(r"[-+]?(0[0-9_]+|0[bx].*|.*:.*)", re.IGNORECASE)
+"""Octal, binary and hexadecimal numbers, and those of base 60."""
+
+_Loader.add_constructor("tag:yaml.org,2002:int", _number)
+_Loader.add_constructor("tag:yaml.org,2002:float", _number)
 _Loader.add_constructor("tag:yaml.org,2002:map", _mapping)
 _Loader.add_constructor("tag:yaml.org,2002:timestamp", _word)
 
@@ -85,6 +108,8 @@ def parsed_mapping(text: bytes | str, name: str) -> Lined:
     except (yaml.YAMLError, UnicodeDecodeError, RecursionError) as error:
         reason = " ".join(str(error).split())
         raise ValueError(f"{name} is not YAML that can be read: {reason}") from error
+    if content is None:
+        raise ValueError(f"{name} is empty; give names and values, as 'seed: 1'")
     if not isinstance(content, Lined):
         raise ValueError(f"{name} is no list of names and values, as 'seed: 1'")
     return content

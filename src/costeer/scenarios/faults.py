@@ -125,7 +125,7 @@ def _of_stations(road: Road) -> Iterator[Fault]:
             yield Fault(
                 place,
                 f"the station at {station.at:g} m is not on the road, which has "
-                f"{road.length:g} m",
+                f"{road.length:g} m; give 0 to that",
             )
         if station.radius == 0.0 or math.isinf(station.radius):
             told = f"a radius of {station.radius:g} m is none; leave it out where the"
@@ -154,7 +154,7 @@ def fastest(road: Road) -> float:
     """Greatest speed that the curves of a road allow [m/s]."""
     curves = [each for each in road.stations if curvature_of(each)]
     radii = [abs(each.radius) - _inner_lane(road, each) for each in curves]
-    return math.sqrt(FASTEST_CORNERING * min(radii, default=math.inf))
+    return math.sqrt(FASTEST_CORNERING * max(min(radii, default=math.inf), 0.0))
 
 
 def _inner_lane(road: Road, station: Bent) -> float:
@@ -269,5 +269,6 @@ def _of_zones(scenario: Scenario) -> Iterator[Fault]:
             yield Fault(
                 ("zones", k),
                 f"zone {zone.name} is from {zone.start:g} to {zone.end:g} m; the road "
-                f"is from 0 to {scenario.road.length:g} m",
+                f"is from 0 to {scenario.road.length:g} m, and a zone ends after it "
+                "starts",
             )

@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterator, Mapping
 from functools import cache, lru_cache
 from importlib.resources import files
+from itertools import pairwise
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -14,7 +15,7 @@ import yaml
 from costeer.base.described import nearest
 from costeer.base.files import read_whole
 from costeer.base.nested import filled, parsed_mapping
-from costeer.scenarios.definition import Scenario, speed_of
+from costeer.scenarios.definition import Scenario, curvature_of, speed_of
 from costeer.scenarios.faults import faults, faults_of_speed
 from costeer.scenarios.limits import Place
 from costeer.scenarios.unreadable import in_words
@@ -23,6 +24,11 @@ _LONGEST_FILE = 200_000
 """Of a scenario [bytes]: some hundred times those that ship."""
 
 _LONGEST_MESSAGE = 400
+
+_STEEPEST = 25.0
+"""Change of lateral acceleration above which a note is made [m/s³]. Source: assumed,
+beyond where imported roads with a straight that meets an arc have it; drivers keep
+below 1 where they can choose."""
 
 
 @cache
@@ -64,7 +70,15 @@ def scenario_named(given: str | Scenario, speed: float | None = None) -> Scenari
 
 def _found(given: str | Scenario) -> Scenario:
     if isinstance(given, Scenario):
-        return _remembered(given)
+        try:
+            return _remembered(given)
+        except TypeError:  # lists in it, which have no hash
+            return checked(given)
+    if not isinstance(given, str):
+        raise ValueError(
+            f"scenario is {given!r:.80}; give a name, such as expressway, a file "
+            "NAME.yaml, or a costeer.Scenario"
+        )
     if given in shipped():
         return _shipped(given)
     if given.endswith((".yaml", ".yml")):
@@ -129,11 +143,19 @@ def chosen(given: str | Scenario, length: float | None, speed: float | None) -> 
 
 def _doubts(scenario: Scenario) -> list[str]:
     """What looks wrong in a scenario and can be driven all the same."""
-    limit = scenario.road.speed_limit
-    if not limit or speed_of(limit) >= speed_of(scenario.speed) - 1e-9:
-        return []
-    told = f"scenario {scenario.name} suggests {scenario.speed} where signs allow"
-    return [f"{told} {limit}"]
+    limit, speed = scenario.road.speed_limit, speed_of(scenario.speed)
+    told, found = f"scenario {scenario.name}", []
+    if limit and speed_of(limit) < speed - 1e-9:
+        found.append(f"{told} suggests {scenario.speed} where signs allow {limit}")
+    for one, after in pairwise(scenario.road.stations):
+        turn = abs(curvature_of(after) - curvature_of(one))
+        least = speed**3 * turn / _STEEPEST
+        if after.at - one.at < least:
+            found.append(
+                f"{told}: nobody can follow the curvature from {one.at:g} to "
+                f"{after.at:g} m; put the stations {least:.2g} m apart or more"
+            )
+    return found
 
 
 def _places(scenario: Scenario) -> Iterator[tuple[str, float]]:

@@ -24,6 +24,9 @@ STEP = 0.25
 LONGEST = 200_000.0
 """Road that is read [m]."""
 
+_TIGHTEST = 0.2
+"""Largest curvature that is read [1/m]; no car turns in less than 5 m."""
+
 _SHAPES = ("line", "arc", "spiral", "poly3", "paramPoly3")
 
 _FINER, _MOST_POINTS = 8, 1_000_000
@@ -129,6 +132,10 @@ def _clothoid(piece: Piece, places: Numbers) -> tuple[Numbers, Numbers, Numbers]
         shape.name, ("curvStart", "curvEnd")
     )
     first, last = (shape.number(name) for name in names) if names else (0.0, 0.0)
+    tightest = max(abs(first), abs(last))
+    if tightest > _TIGHTEST:
+        told = f"a curvature of {tightest:g} 1/m is a radius of {1 / tightest:.2g} m"
+        raise ValueError(f"{shape.where}: {told}; give {1 / _TIGHTEST:g} m or more")
     slope = (last - first) / piece.length
 
     def turned(at: Numbers) -> Numbers:

@@ -28,6 +28,10 @@ NARROWEST = 1.5
 """A lane that is narrower somewhere ends or begins there [m]."""
 
 
+_ROUNDING = 0.05
+"""Below nothing, where a lane that ends is rounded [m]."""
+
+
 class Lane(NamedTuple):
     """A lane in one section of a road.
 
@@ -191,7 +195,12 @@ def edges_of(section: Section, number: int, at: Numbers) -> tuple[Numbers, Numbe
         inner = outer
         widths, borders = lane.element.all("width"), lane.element.all("border")
         if widths:
-            outer = inner + side * cubics(widths, "sOffset", section.begin)(at)
+            width = cubics(widths, "sOffset", section.begin)(at)
+            if width.min() < -_ROUNDING:
+                told = f"lane {each} is {width.min():.3g} m wide"
+                where = f"{widths[0].where}: {told} at s = {at[width.argmin()]:.4g} m"
+                raise ValueError(f"{where}; give 0 or more")
+            outer = inner + side * width
         elif borders:
             outer = cubics(borders, "sOffset", section.begin)(at)
         else:

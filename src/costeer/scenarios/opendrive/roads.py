@@ -135,6 +135,7 @@ def read_road(path: Path, wanted: str = "", against: bool = False) -> Imported:
     notes = [
         *driven.notes,
         *_of_widths(road, widths),
+        *_of_length(road, pieces),
         *_of_joints(pieces),
         *limit_notes,
         *left_out(root, road),
@@ -333,6 +334,15 @@ def _of_widths(road: Element, widths: Numbers) -> Iterator[str]:
         raise ValueError(f"{road.where}: {told} read")
 
 
+def _of_length(road: Element, pieces: Sequence[Piece]) -> Iterator[str]:
+    """What the file says of the road's length, if its geometry has another."""
+    drawn = pieces[-1].begin + pieces[-1].length
+    told = road.number("length", drawn) if "length" in road.given else None
+    if told is None or abs(told - drawn) > max(_GAP, 1e-3 * drawn):
+        said = "no length" if told is None else f"the length {told:g} m"
+        yield f"{road.where}: the road has {said}; its geometry of {drawn:g} m is read"
+
+
 def _of_joints(pieces: Sequence[Piece]) -> Iterator[str]:
     """Gaps and kinks between elements of the reference line, the largest of them."""
     found = []
@@ -341,6 +351,9 @@ def _of_joints(pieces: Sequence[Piece]) -> Iterator[str]:
         gap = math.hypot(end.x[-1] - after.x, end.y[-1] - after.y)
         kink = abs(math.remainder(end.heading[-1] - after.heading, 2.0 * math.pi))
         found.append((gap, kink, after.shape.where))
+        if abs(one.begin + one.length - after.begin) > _GAP:
+            told = f"ends at s = {one.begin + one.length:g} m, the next begins at"
+            yield f"{one.shape.where}: geometry {told} {after.begin:g} m"
     gap, _, where = max(found, default=(0.0, 0.0, ""))
     if gap > _GAP:
         yield f"{where}: geometry begins {gap:.3g} m from the end of the one before"
