@@ -68,9 +68,8 @@ def _number(loader: Any, node: Any) -> Any:
     told = f"line {node.start_mark.line + 1}: {node.value}"
     if value != value:
         raise yaml.YAMLError(f"{told} is no number; give one, or leave it out")
-    raise yaml.YAMLError(
-        f"{told} is read as {value}; write the number that is meant, or put it in quotes"
-    )
+    meant = "write the number that is meant, or put it in quotes"
+    raise yaml.YAMLError(f"{told} is read as {value}; {meant}")
 
 
 _ODD = re.compile(r"[-+]?(0[0-9_]+|0[bx].*|.*:.*)", re.IGNORECASE)

@@ -2,58 +2,39 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
-from costeer.plant.parameters import CarParameters
+from costeer.plant.alignment import line_curvature
+from costeer.plant.parameters import CarParameters, steady_steering_wheel_angle
 from costeer.study.definitions import Columns, Measure, Signal, incomplete, unknown
 from costeer.study.manoeuvres import rms
 
 STRAIGHT = "the road has no curves"
 
-
-def curve_angle(
-    car: CarParameters, curvature: Signal, lateral: Signal, speed: Signal
-) -> Signal:
-    """Steering-wheel angle with which a car stays on its line [rad], `(time,)`.
-
-    That of the linear single-track car in steady state: ratio times
-    (wheelbase + understeer gradient times speed squared) times curvature.
-
-    Args:
-        car: Its parameters.
-        curvature: Of the left lane's centre [1/m], left positive.
-        lateral: Position from it [m], left positive.
-        speed: Along the car's axis [m/s].
-    """
-    wheelbase = car.front_distance + car.rear_distance
-    softer = car.rear_distance / car.front_cornering_stiffness
-    softer -= car.front_distance / car.rear_cornering_stiffness
-    gradient = car.mass / wheelbase * softer
-    line = curvature / (1.0 - curvature * lateral)
-    return np.asarray(car.steering_ratio * (wheelbase + gradient * speed**2) * line)
+_NEEDED = (
+    "road_curvature",
+    "lateral_position",
+    "longitudinal_velocity",
+    "steering_wheel_angle",
+)
 
 
 def beyond_curve(columns: Columns, car: CarParameters) -> Signal | str:
-    """Steering-wheel angle less that of the curve [rad]; or why it is not known."""
-    reason = incomplete(
-        columns,
-        "road_curvature",
-        "steering_wheel_angle",
-        "lateral_position",
-        "longitudinal_velocity",
-    )
+    """Steering-wheel angle less that of steady cornering along the line [rad].
+
+    Or why it is not known.
+    """
+    reason = incomplete(columns, *_NEEDED)
     if reason:
         return reason
-    curvature = np.asarray(columns["road_curvature"])
+    given: Any = [np.asarray(columns[name]) for name in _NEEDED]  # Any: for numbers too
+    curvature, position, speed, angle = given
     if not np.any(curvature):
         return STRAIGHT
-    asked = curve_angle(
-        car,
-        curvature,
-        np.asarray(columns["lateral_position"]),
-        np.asarray(columns["longitudinal_velocity"]),
-    )
-    return np.asarray(columns["steering_wheel_angle"] - asked)
+    line = line_curvature(curvature, position)
+    return np.asarray(angle - steady_steering_wheel_angle(car, speed, line))
 
 
 def angle_beyond_curve(columns: Columns, car: CarParameters) -> dict[str, Measure]:
