@@ -93,7 +93,7 @@ def drivers(
         Path | None,
         typer.Option(
             help="With --out: folder with recordings of people; by default "
-            "that of COSTEER_DATA."
+            "the one that the environment variable COSTEER_DATA names."
         ),
     ] = None,
     fit: Annotated[
@@ -113,21 +113,22 @@ def drivers(
     plot: Annotated[
         Path | None,
         typer.Option(
-            help="FILE.svg to draw the population, its driving or a fit into."
+            help="FILE.svg for a figure of the population, its driving or a fit."
         ),
     ] = None,
     population: Annotated[
         str | None,
         typer.Option(
             metavar="NAME",
-            help="Drawn from: virtual, virtual-traffic, virtual-2; virtual.",
+            help="Population to draw drivers from: virtual (the default), "
+            "virtual-traffic or virtual-2.",
         ),
     ] = None,
     participants: Annotated[
         int | None,
         typer.Option(
             callback=in_range(1, 100_000),
-            help="Number of drivers; by default 200, or 30 pilot drivers.",
+            help="Number of drivers; by default 200, with --threshold 30.",
         ),
     ] = None,
     seed: Annotated[
@@ -141,8 +142,8 @@ def drivers(
         typer.Option(
             parser=parse_speed,
             metavar="SPEED",
-            help="Suggested speed for the list [m/s], or with a unit; by "
-            "default 70km/h.",
+            help="Suggested speed for the list of drivers [m/s], or with a "
+            "unit; by default 70km/h.",
         ),
     ] = None,
     jobs: Annotated[
@@ -159,10 +160,11 @@ def drivers(
 ) -> None:
     """Draw, plot, validate and fit virtual drivers.
 
-    Without options it lists what differs between the drivers of a population, and
-    --plot draws it. With --validate the population drives manually: --plot draws how,
-    and --out writes a full report that compares it with people. The drivers are
-    calibrated on manual driving only; how they respond to guidance is a prediction.
+    Without options the command lists what differs between the drivers of a population,
+    and --plot draws it. With --validate the population drives manually: --plot draws
+    how it drives, and --out writes a full report that compares it with people. The
+    drivers are calibrated on manual driving only; how they respond to guidance is a
+    prediction.
 
     Example:
         costeer drivers --participants 12 --seed 1 --plot out/population.svg

@@ -65,7 +65,9 @@ _TRIGGERS = (
 def evaluate(
     files: Annotated[
         list[Path] | None,
-        typer.Argument(help="Trial records or tables (text, Parquet, Arrow)."),
+        typer.Argument(
+            help="Trial records or tables (text, Parquet, Arrow) to judge on."
+        ),
     ] = None,
     weights: Annotated[
         Path | None,
@@ -77,8 +79,8 @@ def evaluate(
     predictor: Annotated[
         str,
         typer.Option(
-            help="Predictor to judge: gru (costeer's own), another name, "
-            "module:object or FILE.py."
+            help="Predictor to judge: gru (costeer's own network), another "
+            "name that ships, module:object or FILE.py."
         ),
     ] = OURS,
     compare: Annotated[
@@ -92,13 +94,15 @@ def evaluate(
     ] = None,
     ablations: Annotated[
         bool,
-        typer.Option("--ablations", help="Withhold the signals one after the other."),
+        typer.Option(
+            "--ablations", help="Judge also with signals withheld, alone and in groups."
+        ),
     ] = False,
     simulate: Annotated[
         int | None,
         typer.Option(
-            help="Number of simulated drivers to judge on, none of whom was "
-            "trained on.",
+            help="Number of virtual drivers to judge on, none of them used "
+            "in training.",
             callback=in_range(1, 10_000),
         ),
     ] = None,
@@ -113,7 +117,7 @@ def evaluate(
         typer.Option(
             metavar="NAME|FILE",
             help="With --simulate: scenario to drive, at its own speed; by "
-            "default the published road at several speeds.",
+            "default the road of the paper, at several speeds.",
         ),
     ] = None,
     dataset: Annotated[
@@ -123,8 +127,8 @@ def evaluate(
     data: Annotated[
         Path | None,
         typer.Option(
-            help="With --dataset: folder that holds the data sets; by "
-            "default that of COSTEER_DATA."
+            help="With --dataset: folder that holds the data sets; by default "
+            "the one that the environment variable COSTEER_DATA names, else data."
         ),
     ] = None,
     resample: Annotated[
@@ -139,7 +143,7 @@ def evaluate(
         float | None,
         typer.Option(
             help="Probability from which a prediction is positive; by "
-            "default that stored with the weights, else 0.5.",
+            "default the value stored with the weights, or else 0.5.",
             callback=fraction(),
         ),
     ] = None,
@@ -151,7 +155,8 @@ def evaluate(
         ),
     ] = 0.05,
     out: Annotated[
-        Path | None, typer.Option(help="Folder for report, figures and tables.")
+        Path | None,
+        typer.Option(help="Folder to write a report, figures and tables into."),
     ] = None,
     json: Annotated[
         bool, typer.Option("--json", help="Print the results as JSON.")
@@ -161,11 +166,12 @@ def evaluate(
 ) -> None:
     """Judge the intention network on records or a table.
 
-    A table has the columns of a trial record: time, lane, head_yaw,
-    longitudinal_acceleration, longitudinal_velocity, steering_wheel_angle,
-    distance_to_adjacent_lane, yaw_angle, at 60 rows a second; optionally sequence
-    (separate stretches), participant, and crossing (-1, 0, +1 at a crossing). Signals
-    may be missing: the command says which, and which variant of the network is used.
+    A table has 60 rows a second and these columns of a trial record: time, lane,
+    head_yaw, longitudinal_acceleration, longitudinal_velocity, steering_wheel_angle,
+    distance_to_adjacent_lane, yaw_angle. It may also have participant, sequence (which
+    tells separate stretches apart) and crossing (-1 or +1 at a crossing, else 0).
+    Signals may be missing: the command says which, and which variant of the network it
+    uses.
 
     Example:
         costeer evaluate out/study/records/01-manual.parquet --json

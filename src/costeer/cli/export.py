@@ -20,21 +20,21 @@ def export(
     file: Annotated[
         Path,
         typer.Argument(
-            help="Trial record, table, stream of an interrupted drive, or a study."
+            help="Trial record, table, stream of an interrupted drive, or study folder."
         ),
     ],
-    out: Annotated[Path, typer.Option(help="File to write; for a study, a folder.")],
+    out: Annotated[Path, typer.Option(help="File to write; for a study, the folder.")],
     to: Annotated[
-        str, typer.Option(help="Format to write: mcap, parquet, or autoui for a study.")
+        str, typer.Option(help="Format to write: mcap or parquet; for a study, autoui.")
     ] = "mcap",
 ) -> None:
     """Write a record for other programs, or a study for other people.
 
     MCAP with Protobuf messages opens in Foxglove, PlotJuggler and rerun. Parquet turns
     the stream of an interrupted drive into a trial record, and a stream whose name ends
-    in .wheel.arrow into the table of the wheel. With autoui the folder of a study, or
-    of drive records, becomes one with records, tables and a script that makes the
-    report again, described in autoui-repro.yml.
+    in .wheel.arrow into the table of the wheel. With autoui, a folder of a study or of
+    drive records becomes a folder to share: records, tables, a script that makes the
+    report again, and autoui-repro.yml, which describes them.
 
     Example:
         costeer export out/trial.parquet --to mcap --out out/trial.mcap

@@ -24,12 +24,15 @@ _USES = {
 
 def scenario(
     action: Annotated[
-        str, typer.Argument(help="One of list, show, preview, new, export, mistakes.")
+        str,
+        typer.Argument(
+            help="What to do: list, show, preview, new, export or mistakes."
+        ),
     ],
     target: Annotated[
         str | None,
         typer.Argument(
-            help="Name or FILE.yaml of a scenario; with new, the FILE.yaml to write."
+            help="Name or FILE.yaml of a scenario; with new, FILE.yaml to write."
         ),
     ] = None,
     out: Annotated[
@@ -71,16 +74,17 @@ def scenario(
             parser=parse_speed,
             metavar="SPEED",
             help="With --opendrive: suggested speed [m/s], or with a unit, "
-            "such as 90km/h; by default the file's limit, or what its "
-            "curves allow.",
+            "such as 90km/h; by default the file's speed limit, or what "
+            "its curves allow.",
         ),
     ] = None,
 ) -> None:
     """List, show, draw, make and export scenarios: roads, other cars, events.
 
-    A scenario is a short YAML file. `new` writes one to edit: on a straight road, based
-    on one that ships with costeer, or on a road of an OpenDRIVE file. `mistakes` lists
-    the mistakes that can be made on purpose, in a scenario or by --mistake.
+    A scenario is a short YAML file. `new` writes one for you to edit: with a straight
+    road, from a scenario that ships with costeer, or with a road of an OpenDRIVE file.
+    `mistakes` lists what can be made to go wrong on purpose, in a scenario or with
+    --mistake of `costeer simulate` and `costeer study`.
 
     Example:
         costeer scenario list

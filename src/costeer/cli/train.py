@@ -67,7 +67,7 @@ def train(
     simulate: Annotated[
         int,
         typer.Option(
-            help="Number of drivers whose manual trials are simulated.",
+            help="Number of virtual drivers whose manual trials to learn from.",
             callback=in_range(0, 10_000),
         ),
     ] = 0,
@@ -98,30 +98,31 @@ def train(
         str | None,
         typer.Option(
             metavar="shipped|FILE",
-            help="Weights to start from and fine-tune to the recordings.",
+            help="Weights to fine-tune to the recordings.",
         ),
     ] = None,
     adapt: Annotated[
         Path | None,
         typer.Option(
             metavar="FOLDER",
-            help="Folder with recordings, 10 min or more, of the people to "
-            "adapt to: fine-tune, calibrate, set the threshold, judge "
-            "on drivers left out.",
+            help="Folder with 10 min or more of recordings of the people to "
+            "adapt to. The weights of --start are fine-tuned and calibrated, "
+            "the threshold is set, and the result is judged on left-out drivers.",
         ),
     ] = None,
     false_per_km: Annotated[
         float | None,
         typer.Option(
             help="With --adapt: false triggers per kilometre that the "
-            "threshold may allow; by default 0.05.",
+            "threshold may cause; by default 0.05.",
             callback=positive("per km"),
         ),
     ] = None,
     seed: Annotated[
         int,
         typer.Option(
-            help="Seed of drivers, split and initial weights.", callback=at_least(0)
+            help="Seed of the drivers, the split and the initial weights.",
+            callback=at_least(0),
         ),
     ] = 1,
     hidden: Annotated[
@@ -134,8 +135,8 @@ def train(
     steps: Annotated[
         int | None,
         typer.Option(
-            help="Largest number of training steps for each size; with "
-            "--adapt, 0 calibrates only.",
+            help="Largest number of training steps for each network size; "
+            "with --adapt, 0 only calibrates and sets the threshold.",
             callback=at_least(0),
         ),
     ] = None,
@@ -149,8 +150,9 @@ def train(
         float | None,
         typer.Option(
             metavar="KM",
-            help="Check the cheaper form of the network's verdicts on fresh simulated "
-            "drives, such as 10000; from 1000 on the loop uses it if it passes.",
+            help="Length of fresh simulated drives [km], such as 10000, on which to "
+            "check the cheaper form of the network against the exact one; if it "
+            "passes on 1000 or more, the simulation uses it.",
             callback=positive("km"),
         ),
     ] = None,
@@ -158,10 +160,11 @@ def train(
 ) -> None:
     """Fit the intention network on records.
 
-    The drivers are split into training, validation and test drivers; the last judge the
-    result. Baselines that are done are kept beside --out: the same command goes on
-    where it was stopped. With --start all recordings are used for training and nothing
-    is judged. Needs the extra `train` (JAX, Optax, scikit-learn).
+    The drivers are split into training, validation and test drivers; the result is
+    judged on the test drivers. With --start, but without --adapt, all recordings are
+    used for training and nothing is judged. Finished baselines are kept beside --out,
+    so that the same command continues where it was stopped. Training needs the extra
+    `train` (JAX, Optax, scikit-learn).
 
     Example:
         costeer train --simulate 60 --out out/intention.npz
