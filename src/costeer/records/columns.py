@@ -308,12 +308,7 @@ COLUMNS: tuple[Column, ...] = (
         "action.intention",
         "flipped",
     )._replace(nullable=True),
-    _number(
-        "lead_distance",
-        "m",
-        "to the leader, the car to overtake; NaN without one, as with other cars alone",
-        "lead.distance",
-    ),
+    _number("lead_distance", "m", "to the car to overtake, or NaN", "lead.distance"),
     _number("lead_velocity", "m/s", "of the leader; NaN without one", "lead.velocity"),
     _code(
         "lead_lane", "lane of the leader; null without one", "lead.lane", "swapped"

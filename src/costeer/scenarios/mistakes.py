@@ -150,7 +150,7 @@ MISTAKES: dict[str, MistakeKind] = {
         _OFF,
     ),
     "false-steer": MistakeKind(
-        "every minute it evades nothing with {} for 1 s",
+        "every minute it swerves for no reason, with {} for 1 s",
         MOTOR,
         "mistakes.false_steer",
         "N·m",
@@ -159,7 +159,7 @@ MISTAKES: dict[str, MistakeKind] = {
         5.0,
     ),
     "friction": MistakeKind(
-        "the column's friction is {} times what the method believes",
+        "the column has {} times the friction that the method assumes",
         CAR,
         "mistakes.friction_ratio",
         "-",
@@ -168,7 +168,7 @@ MISTAKES: dict[str, MistakeKind] = {
         5.0,
     ),
     "wrong-mass": MistakeKind(
-        "the method believes in {} times the car's mass",
+        "the method assumes {} times the car's mass",
         KNOWLEDGE,
         "mistakes.mass_ratio",
         "-",
@@ -177,7 +177,7 @@ MISTAKES: dict[str, MistakeKind] = {
         1.3,
     ),
     "wrong-tyres": MistakeKind(
-        "the method believes in {} times the tyres' cornering stiffness",
+        "the method assumes {} times the tyres' cornering stiffness",
         KNOWLEDGE,
         "mistakes.tyre_ratio",
         "-",
