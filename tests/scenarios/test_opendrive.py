@@ -23,6 +23,12 @@ def geometry(shape: str, length: float, s: float = 0.0) -> str:
     return f'<geometry s="{s}" x="0" y="0" hdg="0" length="{length}">{shape}</geometry>'
 
 
+def border(number: int, at: float) -> str:
+    """A lane by its outer edge."""
+    edge = f'<border sOffset="0" a="{at}" b="0" c="0" d="0"/>'
+    return f'<lane id="{number}" type="driving">{edge}</lane>'
+
+
 def bends(read: Imported, *places: float) -> list[float]:
     return curvatures(read.road.stations, np.array(places)).tolist()
 
@@ -143,6 +149,7 @@ def test_what_is_not_modelled_is_named_with_its_line(tmp_path: Path) -> None:
         ('length="500.4"', ""),
         ('length="600"', "has the length 600 m; its geometry of 500 m is read"),
         ("", "has no length; its geometry of 500 m is read"),
+        ('length="-1"', "has the length -1 m; its geometry of 500 m is read"),
     ],
 )
 def test_the_road_is_as_long_as_its_geometry(
@@ -152,6 +159,18 @@ def test_the_road_is_as_long_as_its_geometry(
     read = read_road(write(tmp_path, text))
     assert read.road.length == 500.0
     assert [f"the road {told}" in each for each in read.notes] == [True] * bool(told)
+
+
+def test_a_road_that_does_not_begin_at_its_start_is_told(tmp_path: Path) -> None:
+    file = write(tmp_path, road(LINE.format(s=50, x=50, length=450)))
+    told = "the road has the length 500 m; its geometry of 450 m is read"
+    assert told in read_road(file).notes[0]
+
+
+def test_borders_are_as_good_as_widths(tmp_path: Path) -> None:
+    given = section(right=border(-1, -3.0) + border(-2, -6.0))
+    read = read_road(write(tmp_path, road(straight(), given)))
+    assert (read.road.lane_width, read.notes) == (3.0, ())
 
 
 def test_a_stretch_without_geometry_is_told(tmp_path: Path) -> None:
@@ -184,7 +203,7 @@ REFUSED = [
         "length of <geometry> is missing",
     ),
     (road(straight(1e9)), 6, "length of <geometry> is '1000000000.0'; give a number"),
-    (road(straight(1e7)), 4, "at most 200 are read"),
+    (road(straight(1e7)), 4, "give at most 200 km"),
     (
         road(straight(), TWO.replace('c="0" d="0"', 'c="0" d="1"')),
         4,
@@ -197,9 +216,13 @@ REFUSED = [
         "between lanes -3 and -1 lie others",
     ),
     (road(straight(), section(right=lane(-2) + lane(-3))), 9, "without lane -1"),
-    (road(straight(), TWO, 'rule="XYZ"'), 4, "rule is 'XYZ'"),
-    (road(straight(), TWO, inside=SPEED.format(5, "knots")), 9, "'knots' is no unit"),
-    (road(straight(), TWO.replace('id="-1"', 'id="1"')), 9, "left is positive"),
+    (road(straight(), TWO, 'rule="XYZ"'), 4, "give RHT or LHT"),
+    (
+        road(straight(), TWO, inside=SPEED.format(5, "knots")),
+        9,
+        "'knots' is no unit of speed; give one of km/h",
+    ),
+    (road(straight(), TWO.replace('id="-1"', 'id="1"')), 9, "positive on the left"),
     (road(geometry('<arc curvature="-5"/>', 9)), 6, "a radius of 0.2 m; give 5 m"),
     (
         road(straight(), section(right=lane(-1, -3) + lane(-2))),
@@ -213,8 +236,47 @@ REFUSED = [
     ),
     (road(straight()) + "<include file='x'/>", 12, "<include> is not read"),
     ("<road", 4, "no XML"),
-    ("", 2, "no road"),
+    ("", 2, "no road; give one"),
+    (
+        road(straight(), section(right=border(-1, 3.5) + border(-2, 7.0))),
+        9,
+        "lane -1 is -3.5 m wide at s = 0 m; give 0 or more",
+    ),
+    (
+        road(straight(), section(right=lane(-1) + lane(-1, 6.0) + lane(-2))),
+        9,
+        "two lanes have the id -1; give each its own",
+    ),
+    (
+        road(straight(), section(right=lane(-1) + lane(-2), s=100)),
+        9,
+        "lanes begin at s = 100 m; give 0",
+    ),
+    (road(straight(), f"{TWO}\n{TWO}"), 10, "begins at s = 0 m; give 0 or more"),
+    (
+        road(LINE.format(s=-50, x=0, length=550)),
+        6,
+        "begins at s = -50 m; give 0 or more, in rising order",
+    ),
+    (road(straight(0.0)), 6, "geometry of length 0 m; give more"),
 ]
+
+
+@pytest.mark.parametrize("speed", [-5, 900])
+def test_a_speed_limit_that_nobody_means_is_left_out(
+    speed: int, tmp_path: Path
+) -> None:
+    limit = SPEED.format(speed, "km/h")
+    read = read_road(write(tmp_path, road(straight(), inside=limit)))
+    assert read.road.speed_limit == ""
+    assert f"line 9: the speed limit {speed} km/h is left out" in read.notes[0]
+
+
+@pytest.mark.parametrize("encoding", ["gb2312", "idna", "nothing"])
+def test_another_encoding_is_named_with_the_file(encoding: str) -> None:
+    text = f'<?xml version="1.0" encoding="{encoding}"?><OpenDRIVE/>'.encode()
+    with pytest.raises(ValueError, match=r"^a\.xodr is in an encod.*as UTF-8$"):
+        parsed_tree(text, "a.xodr")
 
 
 @pytest.mark.parametrize(

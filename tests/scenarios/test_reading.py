@@ -58,7 +58,7 @@ WRONG = [
     ("speed: 80 km/h", "speed: fast", 2, "is no speed"),
     ("speed: 80 km/h", "speed: 20 km/h", 2, "give 43.2 to 111.6 km/h"),
     ("name: bend", "name: Bend!", 1, "small letters"),
-    ("size: 0.3", "size: .nan", 23, ".nan is no number"),
+    ("size: 0.3", "size: .nan", 23, "size is .nan; give a number"),
     ("size: 0.3", "size: 9", 23, "give a number from -3 to 3"),
     ("torque-bias, size: 0.3", "wrong-side", 23, "needs three lanes or more"),
     ("torque-bias, size: 0.3", "head-lost, size: 1", 23, "has no size"),
@@ -66,8 +66,8 @@ WRONG = [
     ("lanes: 2", "lanes: 1", 5, "from 2 to 6"),
     ("lanes: 2", "lanes: 2.5", 5, "a whole number"),
     ("lanes: 2", "lanes: " + "9" * 500, 5, "from 2 to 6"),
-    ("length: 3000", "length: .nan", 4, ".nan is no number"),
-    ("length: 3000", "length: .inf", 4, "length is inf"),
+    ("length: 3000", "length: .nan", 4, "length is .nan; give a number"),
+    ("length: 3000", "length: .inf", 4, "length is .inf; give a number"),
     ("length: 3000", "length: yes", 4, "give a number"),
     ("length: 3000", "length: 3000, length: 1", 4, ""),
     ("radius: 600", "radius: 60", 8, "too tight for 80 km/h; give 165 m"),
@@ -79,14 +79,14 @@ WRONG = [
     ("first: 500", "first: -1", 9, "from 0 to 200000"),
     ("lane: 0", "lane: 2", 12, "lane 2, which is not there; give 0 (right)"),
     ("    at: 500", "    at: 5000", 13, "outside the road of 3000 m"),
-    ("    at: 500", "    at: 500\n    offset: .nan", 14, ".nan is no number"),
+    ("    at: 500", "    at: 500\n    offset: .nan", 14, "offset is .nan; give"),
     ("    at: 500", "    at: 500\n    length: -4", 14, "length is -4"),
     ("speed: 70 km/h", "speed: 70 mpg", 14, "is no speed"),
     ("{gap: 32}", "{gap: 32, time: 3}", 16, "a moment says time and gap"),
     ("{gap: 32}", "{}", 16, "a moment says nothing"),
     ("{gap: 32}", "{place: 4000}", 16, "can never be on a road of 3000 m"),
     ("{gap: 32}", "{time: 900}", 16, "the drive is over by then"),
-    ("{gap: 32}", "{time_to_collision: .inf}", 16, "time_to_collision is inf"),
+    ("{gap: 32}", "{time_to_collision: .inf}", 16, "time_to_collision is .inf; give"),
     ("{gap: 32}, lane: 1", "{gap: 32}, lane: 7", 16, "lane 7, which is not there"),
     ("{gap: 32}, lane: 1", "{gap: 32}", 16, "neither speed nor lane"),
     ("name: load", "name: first", 17, "stands twice in actors"),
@@ -106,14 +106,37 @@ WRONG = [
     ("name: bend", "name: bend: er", 1, "a colon too many"),
     ("name: bend", "name: be\0nd", 1, "a control character"),
     ("name: bend", 'name: bend\nabout: "a\\x07b"', 2, "control characters"),
-    ("length: 3000", "length: 03000", 4, "03000 is read as 1536; write the number"),
-    ("length: 3000", "length: 50:00", 4, "50:00 is read as 3000; write the number"),
-    ("length: 3000", "length: 0xBB8", 4, "0xBB8 is read as 3000; write the number"),
-    ("at: 1300", "at: 21:40.0", 19, "21:40.0 is read as 1300.0; write the number"),
-    ("radius: 600", "radius: .NaN", 8, ".NaN is no number"),
-    ("headway: 2.5", "headway: .nan", 17, ".nan is no number"),
-    ("name: bend", "name: .nan", 1, ".nan is no number"),
+    (
+        "length: 3000",
+        "length: 03000",
+        4,
+        "length is 03000, which is read as 1536; write",
+    ),
+    (
+        "length: 3000",
+        "length: 50:00",
+        4,
+        "50:00, which is read as 3000; write the number",
+    ),
+    (
+        "length: 3000",
+        "length: 0xBB8",
+        4,
+        "0xBB8, which is read as 3000; write the number",
+    ),
+    ("at: 1300", "at: 21:40.0", 19, "at is 21:40.0, which is read as 1300.0; write"),
+    ("radius: 600", "radius: .NaN", 8, "radius is .NaN; give a number, or leave"),
+    ("headway: 2.5", "headway: .nan", 17, "headway is .nan; give"),
+    ("name: bend", "name: .nan", 1, "name is .nan; give"),
     ("name: bend", "name: 0100", 1, "or put it in quotes"),
+    ("name: bend", "name: .inf", 1, "name is .inf; give"),
+    ("speed: 80 km/h", "about: -.INF", 2, "about is -.INF; give"),
+    ("length: 3000", "length: 1.0e+999", 4, "length is 1.0e+999; give"),
+    ("length: 3000", "length: !!int abc", 4, "length is abc; give a number"),
+    ("length: 3000", "length: !!float abc", 4, "length is abc; give a number"),
+    ("length: 3000", "length: " + "9" * 5000, 4, "give a number"),
+    ("name: bend", "name: bend\n.nan: 1", 2, ".nan; give a number"),
+    ("{at: 300}", "{at: -3}", 7, "is not on the road; give 0 to 3000 m"),
     ("  lanes: 2", "  lanes:", 5, "lanes has no value"),
     ("length: 3000", "length: 3e3", 4, "a number without an exponent"),
     ("name: bend", "name: &n bend\nabout: *n", 2, "references are not read"),
@@ -225,8 +248,11 @@ def test_what_is_no_scenario_is_refused_in_one_line(text: bytes) -> None:
 
 def test_an_empty_file_is_called_empty() -> None:
     for text in ("", "# nothing but this\n"):
-        with pytest.raises(ValueError, match=r"^x\.yaml is empty; give names"):
+        with pytest.raises(ValueError, match=r"^x\.yaml is empty; give names") as told:
             parsed(text, "x.yaml")
+        assert "costeer scenario new FILE.yaml writes a file to begin" in str(
+            told.value
+        )
 
 
 @pytest.mark.parametrize("given", [None, 5, {}, [], b"expressway", 1.5])
@@ -264,6 +290,14 @@ def test_a_curvature_that_jumps_is_told() -> None:
     assert "stations 3.8 m apart" in told(0.001)[0]
     assert len(told(3.7)) == 1
     assert told(3.8) == ()
+    assert "from 100 to 100.0000001 m;" in told(1e-7)[0]
+
+
+def test_of_many_jumps_the_first_is_told() -> None:
+    stations = tuple(Bent(100.0 + k, 200.0 * (-1) ** k) for k in range(9))
+    road = Road(length=1000.0, stations=stations)
+    (note,) = chosen(Scenario("a", road=road), None, None).notes
+    assert "from 100 to 101 m (and in 7 more places)" in note
 
 
 def test_a_huge_file_is_not_read(tmp_path: Path) -> None:

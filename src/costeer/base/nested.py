@@ -7,6 +7,7 @@ further named tuples. A line number is told where the file's text is at hand.
 from __future__ import annotations
 
 import difflib
+import math
 import re
 import types
 from collections.abc import Mapping
@@ -32,6 +33,14 @@ class Lined(dict[str, Any]):
     lines: dict[str, int]
 
 
+class _NoNumber(yaml.YAMLError):
+    """What stands for no number that people mean: its line, and it in words."""
+
+    def __str__(self) -> str:
+        line, told = self.args
+        return f"line {line}: {told}"
+
+
 class _Loader(yaml.SafeLoader):
     """YAML with line numbers, no key twice, no dates."""
 
@@ -43,7 +52,11 @@ class _Loader(yaml.SafeLoader):
             line = key_node.start_mark.line + 1
             if key in found:
                 raise yaml.YAMLError(f"line {line}: {key} stands twice; give it once")
-            found[key] = self.construct_object(value_node, deep=True)
+            try:
+                found[key] = self.construct_object(value_node, deep=True)
+            except _NoNumber as error:
+                line, told = error.args
+                raise yaml.YAMLError(f"line {line}: {key} is {told}") from error
             found.lines[key] = line
         return found
 
@@ -57,19 +70,25 @@ def _word(loader: Any, node: Any) -> Any:
 
 
 def _number(loader: Any, node: Any) -> Any:
-    """A number as people write it, none of those that YAML 1.1 alone knows.
+    """A finite number as people write it, none of those that YAML 1.1 alone knows.
 
     There 0100 is 64 and 1:30 is 90; later versions read them as text or as 100.
+
+    Raises:
+        _NoNumber: If it is another.
     """
     kind = "int" if node.tag.endswith("int") else "float"
-    value = getattr(loader, f"construct_yaml_{kind}")(node)
-    if value == value and not _ODD.fullmatch(node.value):
-        return value
-    told = f"line {node.start_mark.line + 1}: {node.value}"
-    if value != value:
-        raise yaml.YAMLError(f"{told} is no number; give one, or leave it out")
-    meant = "write the number that is meant, or put it in quotes"
-    raise yaml.YAMLError(f"{told} is read as {value}; {meant}")
+    try:
+        value = getattr(loader, f"construct_yaml_{kind}")(node)
+    except ValueError:  # a tag before a word, or thousands of digits
+        value = math.nan
+    line, told = node.start_mark.line + 1, node.value[:40]
+    if not value - value == 0:  # whole numbers may be larger than any float
+        raise _NoNumber(line, f"{told}; give a number, or leave it out")
+    if _ODD.fullmatch(node.value):
+        meant = "write the number that is meant, or put it in quotes"
+        raise _NoNumber(line, f"{told}, which is read as {value}; {meant}")
+    return value
 
 
 _ODD = re.compile(r"[-+]?(0[0-9_]+|0[bx].*|.*:.*)", re.IGNORECASE)
@@ -139,7 +158,7 @@ def filled(kind: type[Settings], given: Mapping[str, Any], name: str) -> Setting
     }
     missing = [key for key in fields if key not in values and key not in defaults]
     if missing:
-        raise ValueError(f"{name} lacks {', '.join(missing)}")
+        raise ValueError(f"{name} lacks {', '.join(missing)}; give a value")
     return kind(**values)
 
 

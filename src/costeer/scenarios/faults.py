@@ -25,7 +25,7 @@ from costeer.scenarios.definition import (
     home_lane,
     speed_of,
 )
-from costeer.scenarios.limits import Fault, Place, out_of_range
+from costeer.scenarios.limits import LIMITS, Fault, Place, out_of_range
 from costeer.scenarios.mistakes import lacks_lane, wrong_in
 
 FASTEST_CORNERING = 3.0
@@ -124,8 +124,8 @@ def _of_stations(road: Road) -> Iterator[Fault]:
         if not 0.0 <= station.at <= road.length:
             yield Fault(
                 place,
-                f"the station at {station.at:g} m is not on the road, which has "
-                f"{road.length:g} m; give 0 to that",
+                f"the station at {station.at:g} m is not on the road; give 0 to "
+                f"{road.length:g} m, or a longer road",
             )
         if station.radius == 0.0 or math.isinf(station.radius):
             told = f"a radius of {station.radius:g} m is none; leave it out where the"
@@ -164,17 +164,18 @@ def _inner_lane(road: Road, station: Bent) -> float:
 
 def faults_of_speed(scenario: Scenario, speed: float) -> Iterator[Fault]:
     """Curves that are too tight for a speed [m/s], the tightest first."""
-    tightest = speed * speed / FASTEST_CORNERING
+    tightest, slowest = speed**2 / FASTEST_CORNERING, LIMITS[Scenario]["speed"].low
     numbered = enumerate(scenario.road.stations)
     for k, station in sorted(numbered, key=lambda each: -abs(curvature_of(each[1]))):
         beside = _inner_lane(scenario.road, station)
         if abs(station.radius) - beside < tightest * (1.0 - 1e-9):
             inner = f" ({abs(station.radius) - beside:.4g} m in the inner lane)"
+            slower = ", or a smaller speed" if speed > slowest + 1e-9 else ""
             yield Fault(
                 ("road", "stations", k),
                 f"the curve of {abs(station.radius):.4g} m{inner if beside else ''} at "
                 f"{station.at:g} m is too tight for {speed * 3.6:.4g} km/h; give "
-                f"{tightest + beside:.0f} m or more, or a smaller speed",
+                f"{tightest + beside:.0f} m or more{slower}",
             )
 
 
@@ -268,7 +269,7 @@ def _of_zones(scenario: Scenario) -> Iterator[Fault]:
         if not 0.0 <= zone.start < zone.end <= scenario.road.length:
             yield Fault(
                 ("zones", k),
-                f"zone {zone.name} is from {zone.start:g} to {zone.end:g} m; the road "
-                f"is from 0 to {scenario.road.length:g} m, and a zone ends after it "
-                "starts",
+                f"zone {zone.name} is from {zone.start:g} to {zone.end:g} m; give a "
+                f"start of 0 or more and an end behind it, on the road of "
+                f"{scenario.road.length:g} m",
             )

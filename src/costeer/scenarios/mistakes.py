@@ -254,7 +254,8 @@ def lacks_lane(mistake: Mistake, num_lanes: float) -> str:
     """
     if mistake.kind != "wrong-side" or num_lanes >= 3:
         return ""
-    return f"wrong-side needs three lanes or more; this road has {num_lanes:g}"
+    told = f"wrong-side needs three lanes or more; this road has {num_lanes:g}"
+    return f"{told}: leave it out, or give the road more"
 
 
 def parsed_mistakes(words: Iterable[str]) -> tuple[Mistake, ...]:

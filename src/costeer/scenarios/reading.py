@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from functools import cache, lru_cache
 from importlib.resources import files
 from itertools import pairwise
@@ -15,7 +15,7 @@ import yaml
 from costeer.base.described import nearest
 from costeer.base.files import read_whole
 from costeer.base.nested import filled, parsed_mapping
-from costeer.scenarios.definition import Scenario, curvature_of, speed_of
+from costeer.scenarios.definition import Bent, Scenario, curvature_of, speed_of
 from costeer.scenarios.faults import faults, faults_of_speed
 from costeer.scenarios.limits import Place
 from costeer.scenarios.unreadable import in_words
@@ -24,6 +24,9 @@ _LONGEST_FILE = 200_000
 """Of a scenario [bytes]: some hundred times those that ship."""
 
 _LONGEST_MESSAGE = 400
+
+_EXAMPLE = "'name: mine'; costeer scenario new FILE.yaml writes a file to begin with"
+"""Of what a scenario holds."""
 
 _STEEPEST = 25.0
 """Change of lateral acceleration above which a note is made [m/s³]. Source: assumed,
@@ -147,15 +150,25 @@ def _doubts(scenario: Scenario) -> list[str]:
     told, found = f"scenario {scenario.name}", []
     if limit and speed_of(limit) < speed - 1e-9:
         found.append(f"{told} suggests {scenario.speed} where signs allow {limit}")
-    for one, after in pairwise(scenario.road.stations):
+    steep = [*_steep(scenario.road.stations, speed)]
+    for one, after, least in steep[:1]:
+        more = f" (and in {len(steep) - 1} more places)" if steep[1:] else ""
+        found.append(
+            f"{told}: nobody can follow the curvature from {one.at:.10g} to "
+            f"{after.at:.10g} m{more}; put the stations {least:.2g} m apart or more"
+        )
+    return found
+
+
+def _steep(
+    stations: Sequence[Bent], speed: float
+) -> Iterator[tuple[Bent, Bent, float]]:
+    """Stations between which the curvature jumps, and the distance they need [m]."""
+    for one, after in pairwise(stations):
         turn = abs(curvature_of(after) - curvature_of(one))
         least = speed**3 * turn / _STEEPEST
         if after.at - one.at < least:
-            found.append(
-                f"{told}: nobody can follow the curvature from {one.at:g} to "
-                f"{after.at:g} m; put the stations {least:.2g} m apart or more"
-            )
-    return found
+            yield one, after, least
 
 
 def _places(scenario: Scenario) -> Iterator[tuple[str, float]]:
@@ -197,7 +210,7 @@ def parsed(text: bytes | str, name: str) -> Scenario:
         content = parsed_mapping(text, name)
         scenario = filled(Scenario, content, name)
     except ValueError as error:
-        told = in_words(error, text, name)
+        told = in_words(error, text, name).replace("'seed: 1'", _EXAMPLE)
         shortened = f"{told[: _LONGEST_MESSAGE - 3]}..."
         wrong = told if len(told) <= _LONGEST_MESSAGE else shortened
         raise ValueError(wrong) from error

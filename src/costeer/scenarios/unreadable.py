@@ -53,4 +53,4 @@ def _problem(error: yaml.MarkedYAMLError) -> str:
     for part, told in _PROBLEMS.items():
         if part in said:
             return told
-    return f"this is not YAML: {said}"
+    return f"this is not YAML: {said}; compare the line with an example in the docs"

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -28,6 +27,8 @@ _TIGHTEST = 0.2
 """Largest curvature that is read [1/m]; no car turns in less than 5 m."""
 
 _SHAPES = ("line", "arc", "spiral", "poly3", "paramPoly3")
+
+_RANGES = "give normalized or arcLength"
 
 _FINER, _MOST_POINTS = 8, 1_000_000
 """Points of a polynomial for each point that is kept, where its length is measured."""
@@ -75,19 +76,32 @@ def pieces_of(road: Element) -> list[Piece]:
     """
     listed = [_piece(each) for each in road.below("planView", "geometry")]
     if not listed:
-        raise ValueError(f"{road.where}: the road has no planView with geometry")
-    for one, after in pairwise(listed):
-        if not after.begin > one.begin:
-            where = after.shape.where
-            raise ValueError(
-                f"{where}: geometry at s = {after.begin:g} m comes after "
-                f"{one.begin:g} m; they must rise"
-            )
+        raise ValueError(
+            f"{road.where}: the road has no planView; give it one with geometry"
+        )
+    check_rising([(each.begin, each.shape) for each in listed])
     total = listed[-1].begin + listed[-1].length
     if not total <= LONGEST:
-        told = f"the road is {total / 1000:.5g} km long"
-        raise ValueError(f"{road.where}: {told}; at most {LONGEST / 1000:g} are read")
+        told = f"the road is {total / 1000:.5g} km long; give at most"
+        raise ValueError(f"{road.where}: {told} {LONGEST / 1000:g} km")
     return listed
+
+
+def check_rising(begun: Sequence[tuple[float, Element]]) -> None:
+    """Refuse what a road cannot have one after the other.
+
+    Args:
+        begun: Where each begins along the road [m], and what.
+
+    Raises:
+        ValueError: If one begins before the road or no later than that before it.
+    """
+    before = -1e-6
+    for begin, element in begun:
+        if not begin > before:
+            told = f"this begins at s = {begin:g} m; give 0 or more, in rising order"
+            raise ValueError(f"{element.where}: {told}")
+        before = begin
 
 
 def _piece(geometry: Element) -> Piece:
@@ -95,12 +109,14 @@ def _piece(geometry: Element) -> Piece:
     if len(known) != 1:
         found = ", ".join(each.name for each in geometry.children) or "nothing"
         raise ValueError(
-            f"{geometry.where}: geometry of {found[:60]} is not read; one of "
-            f"{', '.join(_SHAPES)} is"
+            f"{geometry.where}: geometry of {found[:60]} is not read; give one of "
+            f"{', '.join(_SHAPES)}"
         )
     length = geometry.number("length")
     if not length > 0.0:
-        raise ValueError(f"{geometry.where}: geometry of length {length:g} m")
+        raise ValueError(
+            f"{geometry.where}: geometry of length {length:g} m; give more"
+        )
     begin, x, y = (geometry.number(name) for name in ("s", "x", "y"))
     return Piece(begin, length, x, y, geometry.number("hdg"), known[0])
 
@@ -161,14 +177,15 @@ def _polynomial(piece: Piece, places: Numbers) -> tuple[Numbers, Numbers, Number
         # Files without it mean 0 to 1, as the standard says.
         given = shape.given.get("pRange", "normalized")
         if given not in ("normalized", "arcLength"):
-            raise ValueError(f"{shape.where}: pRange is {given[:40]!r}")
+            raise ValueError(f"{shape.where}: pRange is {given[:40]!r}; {_RANGES}")
         reach = length if given == "arcLength" else 1.0
     count = min(max(int(length / STEP) * _FINER, 64), _MOST_POINTS)
     p = np.linspace(0.0, reach, count + 1)
     du, dv = (np.polyval(_slope(each), p) for each in (along, across))
     speed = np.hypot(du, dv)
     if not (np.isfinite(speed).all() and speed.min() > 0.0):
-        raise ValueError(f"{shape.where}: the curve of <{shape.name}> stands still")
+        told = f"the curve of <{shape.name}> stands still"
+        raise ValueError(f"{shape.where}: {told}; give coefficients that lead on")
     middle = np.hypot(
         *(np.polyval(_slope(e), (p[1:] + p[:-1]) / 2.0) for e in (along, across))
     )
@@ -180,8 +197,8 @@ def _polynomial(piece: Piece, places: Numbers) -> tuple[Numbers, Numbers, Number
         scale = length / lengths[-1]
         if abs(scale - 1.0) > 0.02:
             raise ValueError(
-                f"{shape.where}: the curve is {lengths[-1]:.2f} m long, its geometry "
-                f"says {length:.2f} m"
+                f"{shape.where}: the curve is {lengths[-1]:.2f} m long; its geometry "
+                f"says {length:.2f} m: give the same length there"
             )
     at = np.interp(places, lengths * scale, p)
     u, v = (np.polyval(each[::-1], at) for each in (along, across))

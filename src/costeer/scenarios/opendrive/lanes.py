@@ -8,12 +8,12 @@ with positive numbers do (ASAM OpenDRIVE 1.8, section 11).
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from costeer.scenarios.opendrive.geometry import check_rising
 from costeer.scenarios.opendrive.tree import Element
 
 Numbers = NDArray[np.float64]
@@ -26,7 +26,6 @@ BESIDE = ("shoulder", "stop", "border")
 
 NARROWEST = 1.5
 """A lane that is narrower somewhere ends or begins there [m]."""
-
 
 _ROUNDING = 0.05
 """Below nothing, where a lane that ends is rounded [m]."""
@@ -72,14 +71,16 @@ def sections_of(road: Element) -> list[Section]:
     """
     found = [_section(each) for each in road.below("lanes", "laneSection")]
     if not found:
-        raise ValueError(f"{road.where}: the road has no laneSection")
+        raise ValueError(f"{road.where}: the road has no laneSection; give it one")
     # Sections of one side only: they would have to be laid over each other.
     for each in found:
         if each.element.given.get("singleSide") == "true":
-            raise ValueError(f"{each.element.where}: singleSide sections are not read")
-    for one, after in pairwise(found):
-        if not after.begin > one.begin:
-            raise ValueError(f"{after.element.where}: laneSections must rise in s")
+            told = "singleSide sections are not read; write both sides into one"
+            raise ValueError(f"{each.element.where}: {told}")
+    check_rising([(each.begin, each.element) for each in found])
+    if found[0].begin > _ROUNDING:
+        told = f"lanes begin at s = {found[0].begin:g} m; give 0"
+        raise ValueError(f"{found[0].element.where}: {told}")
     return found
 
 
@@ -89,8 +90,11 @@ def _section(element: Element) -> Section:
         for each in element.below(side, "lane"):
             number = each.number("id")
             if number != int(number) or (number > 0) != (side == "left"):
-                told = f"a lane on the {side} has the id {number:g}"
-                raise ValueError(f"{each.where}: {told}; left is positive")
+                told = f"a lane on the {side} has the id {number:g}; give whole numbers"
+                raise ValueError(f"{each.where}: {told}, positive on the left")
+            if number in lanes:
+                told = f"two lanes have the id {number:g}; give each its own"
+                raise ValueError(f"{each.where}: {told}")
             kind = each.given.get("type", "none")
             lanes[int(number)] = Lane(int(number), kind, each)
     return Section(element.number("s"), lanes, element)
@@ -159,7 +163,7 @@ def cubics(records: Sequence[Element], key: str, begin: float = 0.0) -> Cubics:
     starts = np.array([begin + each.number(key) for each in records])
     if np.any(np.diff(starts) < 0.0):
         where = records[int(np.argmax(np.diff(starts) < 0.0)) + 1].where
-        raise ValueError(f"{where}: records must rise in {key}")
+        raise ValueError(f"{where}: give {key} in rising order")
     factors = np.array([[each.number(name) for name in "abcd"] for each in records])
 
     def value(at: Numbers) -> Numbers:
@@ -183,28 +187,27 @@ def edges_of(section: Section, number: int, at: Numbers) -> tuple[Numbers, Numbe
         at: Along the road [m].
 
     Raises:
-        ValueError: If a lane in between is missing or has no width.
+        ValueError: If a lane in between is missing or has no width, or a negative one.
     """
     side = 1 if number > 0 else -1
     inner = outer = np.zeros_like(at)
     for each in range(side, number + side, side):
         lane = section.lanes.get(each)
         if lane is None:
-            told = f"lane {number} is there without lane {each}"
+            told = f"lane {number} is there without lane {each}; give both"
             raise ValueError(f"{section.element.where}: {told}")
         inner = outer
         widths, borders = lane.element.all("width"), lane.element.all("border")
-        if widths:
-            width = cubics(widths, "sOffset", section.begin)(at)
-            if width.min() < -_ROUNDING:
-                told = f"lane {each} is {width.min():.3g} m wide"
-                where = f"{widths[0].where}: {told} at s = {at[width.argmin()]:.4g} m"
-                raise ValueError(f"{where}; give 0 or more")
-            outer = inner + side * width
-        elif borders:
-            outer = cubics(borders, "sOffset", section.begin)(at)
-        else:
-            raise ValueError(f"{lane.element.where}: lane {each} has no width")
+        if not (widths or borders):
+            told = f"lane {each} has no width; give it <width> or <border>"
+            raise ValueError(f"{lane.element.where}: {told}")
+        drawn = cubics(widths or borders, "sOffset", section.begin)(at)
+        outer = inner + side * drawn if widths else drawn
+        width = side * (outer - inner)
+        if width.min() < -_ROUNDING:
+            told = f"lane {each} is {width.min():.3g} m wide"
+            where = f"{lane.element.where}: {told} at s = {at[width.argmin()]:.4g} m"
+            raise ValueError(f"{where}; give 0 or more")
     return inner, outer
 
 

@@ -118,8 +118,8 @@ def read_road(path: Path, wanted: str = "", against: bool = False) -> Imported:
         parts = [(x[::-1], y[::-1]) for x, y in reversed(parts)]
     line = line_through(parts)
     if not line.length <= LONGEST_ROAD:
-        told = f"its lanes are {line.length:.3g} m long; at most {LONGEST_ROAD:g} are"
-        raise ValueError(f"{road.where}: {told} read")
+        told = f"its lanes are {line.length:.3g} m long; give at most"
+        raise ValueError(f"{road.where}: {told} {LONGEST_ROAD:g} m")
     fit = fitted(line)
     widths = np.concatenate([each.widths for each in strips], axis=1)
     limit, limit_notes = _limit(road)
@@ -154,7 +154,7 @@ def _chosen(root: Element, wanted: str) -> Element:
     """
     roads = root.all("road")
     if not roads:
-        raise ValueError(f"{root.where}: the file has no road")
+        raise ValueError(f"{root.where}: the file has no road; give one that has")
     found = [each for each in roads if each.given.get("id", "") == wanted]
     if not wanted and len(roads) == 1:
         found = roads
@@ -181,7 +181,7 @@ def _left_hand(road: Element) -> bool:
     """
     rule = road.given.get("rule", "RHT")
     if rule not in ("RHT", "LHT"):
-        raise ValueError(f"{road.where}: rule is {rule[:40]!r}; RHT or LHT")
+        raise ValueError(f"{road.where}: rule is {rule[:40]!r}; give RHT or LHT")
     return rule == "LHT"
 
 
@@ -210,14 +210,15 @@ def _driven(road: Element, sections: Sequence[lane.Section], against: bool) -> _
         way = "against" if against else "along"
         raise ValueError(
             f"{road.where}: {len(chains)} lanes are driven on {way} the reference line "
-            f"from end to end ({names or 'none'}); costeer needs 2 to {most}"
+            f"from end to end ({names or 'none'}); take a road (--road) or direction "
+            f"(--against) with 2 to {most}"
         )
     for place, section in enumerate(sections):
         numbers = sorted(chain[place] for chain in chains)
         for one, after in pairwise(numbers):
             if after - one > (2 if one == -1 else 1):
-                told = f"between lanes {one} and {after} lie others"
-                raise ValueError(f"{section.element.where}: {told}; this is not read")
+                told = f"between lanes {one} and {after} lie others; give neighbours"
+                raise ValueError(f"{section.element.where}: {told}")
     notes += _of_lanes(sections, chains, side)
     return _Driven(tuple(chains), side == along, tuple(notes))
 
@@ -258,7 +259,7 @@ def _of_lanes(
             way = element.given.get("direction", "standard")
             if way != "standard":
                 told = f"lane {chain[place]} has the direction {way[:20]!r}"
-                raise ValueError(f"{element.where}: {told}; only standard is read")
+                raise ValueError(f"{element.where}: {told}; give standard")
 
 
 def _strips(
@@ -290,7 +291,7 @@ def _strips(
         if abs(centre[0] - before) > _JUMP:
             where = sections[place].element.where
             told = f"at s = {begin:g} m the lane is {abs(centre[0] - before):.1f} m"
-            raise ValueError(f"{where}: {told} beside itself; this is not read")
+            raise ValueError(f"{where}: {told} beside itself; give even widths there")
         before = float(centre[-1])
         course = course_of(piece, at - piece.begin)
         x = course.x - centre * np.sin(course.heading)
@@ -330,13 +331,13 @@ def _of_widths(road: Element, widths: Numbers) -> Iterator[str]:
         yield f"{road.where}: {told}; all are read as {mean:.3f} m"
     limits = LIMITS[Road]["lane_width"]
     if not limits.low <= mean <= limits.high:
-        told = f"lanes are {mean:.2f} m wide; {limits.low:g} to {limits.high:g} m are"
-        raise ValueError(f"{road.where}: {told} read")
+        told = f"lanes are {mean:.2f} m wide; give {limits.low:g} to {limits.high:g} m"
+        raise ValueError(f"{road.where}: {told}")
 
 
 def _of_length(road: Element, pieces: Sequence[Piece]) -> Iterator[str]:
     """What the file says of the road's length, if its geometry has another."""
-    drawn = pieces[-1].begin + pieces[-1].length
+    drawn = pieces[-1].begin + pieces[-1].length - pieces[0].begin
     told = road.number("length", drawn) if "length" in road.given else None
     if told is None or abs(told - drawn) > max(_GAP, 1e-3 * drawn):
         said = "no length" if told is None else f"the length {told:g} m"
@@ -353,10 +354,11 @@ def _of_joints(pieces: Sequence[Piece]) -> Iterator[str]:
         found.append((gap, kink, after.shape.where))
         if abs(one.begin + one.length - after.begin) > _GAP:
             told = f"ends at s = {one.begin + one.length:g} m, the next begins at"
-            yield f"{one.shape.where}: geometry {told} {after.begin:g} m"
+            yield f"{one.shape.where}: geometry {told} {after.begin:g} m and counts"
     gap, _, where = max(found, default=(0.0, 0.0, ""))
     if gap > _GAP:
-        yield f"{where}: geometry begins {gap:.3g} m from the end of the one before"
+        told = f"geometry begins {gap:.3g} m from the end of the one before"
+        yield f"{where}: {told}; it is moved there"
     kink, where = max(((k, w) for _, k, w in found), default=(0.0, ""))
     if kink > _KINK:
         told = f"geometry begins with a kink of {math.degrees(kink):.2g} degrees"
@@ -369,21 +371,25 @@ def _limit(road: Element) -> tuple[str, list[str]]:
     Raises:
         ValueError: If it is no speed, naming the line.
     """
-    given = []
+    given, notes, limits = [], list[str](), LIMITS[Road]["speed_limit"]
     for each in road.below("type", "speed"):
         text = each.given.get("max", "")
         if text in ("no limit", "undefined", ""):
             continue
         unit = each.given.get("unit", "m/s")
         if unit not in _UNITS:
-            raise ValueError(f"{each.where}: unit {unit[:20]!r} is no unit of speed")
+            told = f"unit {unit[:20]!r} is no unit of speed; give one of"
+            raise ValueError(f"{each.where}: {told} {', '.join(_UNITS)}")
         value = each.number("max")
-        if 3.0 <= value * _UNITS[unit] <= 60.0:
+        if limits.low <= value * _UNITS[unit] <= limits.high:
             given.append((f"{value:.4g} {unit}", each.where))
-    if not given:
-        return "", []
-    first, others = given[0][0], {text for text, _ in given[1:]} - {given[0][0]}
-    if not others:
-        return first, []
-    told = f"the speed limit changes to {', '.join(sorted(others))}"
-    return first, [f"{given[1][1]}: {told}; {first} is shown all along"]
+        else:
+            notes.append(
+                f"{each.where}: the speed limit {value:.4g} {unit} is left out"
+            )
+    first = given[0][0] if given else ""
+    others = sorted({text for text, _ in given} - {first})
+    if others:
+        told = f"the speed limit changes to {', '.join(others)}"
+        notes.append(f"{given[1][1]}: {told}; {first} is shown all along")
+    return first, notes

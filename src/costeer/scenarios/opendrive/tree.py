@@ -103,7 +103,9 @@ class _Reader:
             self.root.file, name, self.parser.CurrentLineNumber, given, []
         )
         if len(self.open) > _DEEPEST or self.count > _MOST_ELEMENTS:
-            raise ValueError(f"{element.where}: the file holds more than a road has")
+            raise ValueError(
+                f"{element.where}: the file holds more than a road has; cut it"
+            )
         if self.closed_below is None:
             self.open[-1].children.append(element)
             if name in _NOT_OPENED:
@@ -150,9 +152,14 @@ def parsed_tree(text: bytes, name: str) -> Element:
         reader.parser.Parse(text, True)
     except expat.ExpatError as error:
         told = expat.ErrorString(error.code)
-        raise ValueError(f"{name}, line {error.lineno}: no XML: {told}") from error
-    except LookupError as error:  # of an encoding that nobody knows
-        raise ValueError(f"{name} is in an unknown encoding: {error}") from error
+        raise ValueError(
+            f"{name}, line {error.lineno}: no XML: {told}; give a whole file"
+        ) from error
+    except (LookupError, ValueError) as error:
+        if str(error).startswith(name):  # refused above
+            raise
+        told = f"is in an encoding that is not read ({error}); save it as UTF-8"
+        raise ValueError(f"{name} {told}") from error
     root = reader.root.children[0]
     if root.name.rpartition(":")[2] != "OpenDRIVE":
         raise ValueError(
