@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import pytest
@@ -22,7 +23,7 @@ HEAD = "title: a\nsteps:\n  - {kind: instruct, text: welcome}\n"
     [
         ("{kind: practise, condition: manual, minutes: 5}", "longest_minutes is nan"),
         ("{kind: break, minutes: -5}", "minutes is -5; give 0 to 120"),
-        ("{kind: break, minutes: .inf}", "minutes is inf; give 0 to 120"),
+        ("{kind: break, minutes: 900}", "minutes is 900; give 0 to 120"),
         ("{kind: drive, condition: manual, conditions: [manual]}", "conditions says"),
         ("{kind: ask, instrument: ssq, minutes: 3}", "minutes says nothing here"),
         ("{kind: instruct}", "has no text"),
@@ -53,6 +54,14 @@ HEAD = "title: a\nsteps:\n  - {kind: instruct, text: welcome}\n"
 def test_a_step_that_cannot_be_is_refused_with_its_line(step: str, said: str) -> None:
     with pytest.raises(ValueError, match=f"line 4: step 2 .*{said}"):
         parsed_plan(f"{HEAD}  - {step}\n")
+
+
+@pytest.mark.parametrize("written", [".inf", ".nan", "1:30", "010", "!!int ''"])
+def test_no_number_of_a_step_is_another_than_it_seems(written: str) -> None:
+    # YAML 1.1 reads 1:30 as 90 and 010 as 8; NaN would mean "not given".
+    shown = written.removeprefix("!!int ''")
+    with pytest.raises(ValueError, match=f"line 4: minutes is {re.escape(shown)}[,;]"):
+        parsed_plan(f"{HEAD}  - {{kind: break, minutes: {written}}}\n")
 
 
 def labels(steps: str) -> list[tuple[str, int, str]]:

@@ -80,7 +80,7 @@ def _number(loader: Any, node: Any) -> Any:
     kind = "int" if node.tag.endswith("int") else "float"
     try:
         value = getattr(loader, f"construct_yaml_{kind}")(node)
-    except ValueError:  # a tag before a word, or thousands of digits
+    except (ValueError, IndexError):  # a tag before no number, thousands of digits
         value = math.nan
     line, told = node.start_mark.line + 1, node.value[:40]
     if not value - value == 0:  # whole numbers may be larger than any float
