@@ -125,7 +125,9 @@ def test_what_lies_beyond_a_shorter_drive_is_told() -> None:
 
 def test_a_speed_above_the_signs_is_told() -> None:
     slow = Scenario("x", speed="80 km/h", road=ROAD._replace(speed_limit="50 km/h"))
-    assert "suggests 80 km/h where signs allow 50" in chosen(slow, None, None).notes[0]
+    assert (
+        "is driven at 80 km/h where signs allow 50" in chosen(slow, None, None).notes[0]
+    )
     even = slow._replace(road=ROAD._replace(speed_limit="80 km/h"))
     assert chosen(even, None, None).notes == ()
 

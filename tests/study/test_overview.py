@@ -7,8 +7,12 @@ import math
 import pytest
 
 from costeer.methods.conditions import CONDITION_NAMES
+from costeer.pages.numerals import NOTHING
+from costeer.scenarios.definition import Event, Overtaking, Scenario
+from costeer.scenarios.reading import scenario_named
 from costeer.study.material import StudyMaterial
 from costeer.study.reporting import overview
+from costeer.study.reporting.event_tables import lane_changes_table
 from costeer.study.reporting.overview import planned_changes, tallies, total
 
 
@@ -20,6 +24,33 @@ def test_two_lane_changes_are_planned_for_each_event(
     length: float, planned: int
 ) -> None:
     assert planned_changes(length) == planned
+
+
+@pytest.mark.parametrize(
+    ("scenario", "planned"),
+    [
+        ("expressway", 8.0),
+        (Scenario("x", overtaking=Overtaking(cars=3, first=200.0, spacing=500.0)), 6.0),
+        (Scenario("x"), math.nan),
+        ("cut-in", math.nan),
+        ("dense-traffic", math.nan),
+        (Scenario("x", events=(Event("lane-change", 500.0, side="right"),)), math.nan),
+    ],
+)
+def test_the_scenario_says_what_is_planned(
+    scenario: str | Scenario, planned: float
+) -> None:
+    found = planned_changes(8000.0, scenario_named(scenario))
+    assert found == pytest.approx(planned, nan_ok=True)
+
+
+def test_nobody_planned_what_the_scenario_does_not(material: StudyMaterial) -> None:
+    study = with_settings(material, scenario="cut-in")._replace(metadata=())
+    completed = len(material.lane_changes)
+    (sentence,) = [e for e in overview.run_sentences(study) if "lane change" in e]
+    assert sentence.startswith(f"{completed} lane changes were completed; ")
+    table = lane_changes_table(study)
+    assert {row[2] for row in table.rows} == {row[4] for row in table.rows} == {NOTHING}
 
 
 def test_the_whole_is_the_sum_of_its_conditions(material: StudyMaterial) -> None:

@@ -133,23 +133,24 @@ def chosen(given: str | Scenario, length: float | None, speed: float | None) -> 
     own = scenario.road.length
     driven = own if length is None else length
     beyond = [f"{name} ({at:g} m)" for name, at in _places(scenario) if at > driven]
-    notes = _doubts(scenario)
+    fast = speed_of(scenario.speed) if speed is None else speed
+    notes = _doubts(scenario, fast)
     if beyond:
         told = f"beyond {driven:g} m of scenario {scenario.name} lie"
         notes.append(f"{told} {', '.join(beyond[:3])}; make it longer to meet them")
     if driven > own and scenario.road.stations:
         told = f"after {own:g} m the road of scenario {scenario.name} goes on as it"
         notes.append(f"{told} ends")
-    fast = speed_of(scenario.speed) if speed is None else speed
     return Chosen(scenario, driven, fast, tuple(notes))
 
 
-def _doubts(scenario: Scenario) -> list[str]:
+def _doubts(scenario: Scenario, speed: float) -> list[str]:
     """What looks wrong in a scenario and can be driven all the same."""
-    limit, speed = scenario.road.speed_limit, speed_of(scenario.speed)
+    limit = scenario.road.speed_limit
     told, found = f"scenario {scenario.name}", []
     if limit and speed_of(limit) < speed - 1e-9:
-        found.append(f"{told} suggests {scenario.speed} where signs allow {limit}")
+        fast = f"{speed * 3.6:.4g} km/h"
+        found.append(f"{told} is driven at {fast} where signs allow {limit}")
     steep = [*_steep(scenario.road.stations, speed)]
     for one, after, least in steep[:1]:
         more = f" (and in {len(steep) - 1} more places)" if steep[1:] else ""

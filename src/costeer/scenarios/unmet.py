@@ -29,7 +29,7 @@ def unmet(record: TrialRecord) -> list[str]:
     about: Any = record.metadata  # Any: from JSON
     columns, found = record.columns, list[str]()
     scenario = scenario_of(about["scenario"])
-    own_length = about["configuration"]["controller"]["car"]["length"]
+    own_length = about["configuration"]["car"]["length"]
     for number, actor in enumerate(scenario.actors, start=1):
         half = (size_of(actor)[0] + own_length) / 2.0
         found += _unmet_of(actor, f"car_{number:02d}", columns, half)

@@ -10,7 +10,8 @@ import pandas as pd
 
 from costeer.methods.conditions import CONDITION_NAMES
 from costeer.pages.numerals import listed, number, percent, plural
-from costeer.plant.traffic import TrafficParameters
+from costeer.scenarios.definition import Scenario
+from costeer.scenarios.reading import scenario_named, scenario_of, shipped
 from costeer.study.configuration import differences
 from costeer.study.material import (
     StudyMaterial,
@@ -19,6 +20,7 @@ from costeer.study.material import (
     strengths_driven,
     why_without,
 )
+from costeer.study.scenario import PAPERS
 
 CHANGES_PER_EVENT = 2
 """One to the right, one back to the left. Source: the paper, Sec. III-B."""
@@ -30,31 +32,49 @@ class Tally(NamedTuple):
     Attributes:
         name: Of the condition.
         trials: Trials driven.
-        planned: Lane changes planned in them.
+        planned: Lane changes planned in them; NaN where the scenario plans none.
         completed: Lane changes completed.
         dropped: Crossings that make no lane change; reasons in `trials.csv`.
     """
 
     name: str
     trials: int
-    planned: int
+    planned: float
     completed: int
     dropped: int
 
 
-def planned_changes(length: float) -> int:
-    """Return the lane changes planned on a course of that length [m]."""
-    traffic = TrafficParameters()
-    places = [
-        traffic.first_event + number * traffic.event_spacing
-        for number in range(int(traffic.num_events))
-    ]
-    return CHANGES_PER_EVENT * sum(place < length for place in places)
+def planned_changes(length: float, scenario: Scenario | None = None) -> float:
+    """Return the lane changes planned on a course of that length [m].
+
+    Args:
+        length: Of the course [m].
+        scenario: With cars to overtake; None for the paper's. NaN where other cars or
+            requests make people change lanes as well, or nobody is to be overtaken.
+    """
+    scenario = scenario or scenario_named(PAPERS)
+    events, cars = scenario.overtaking, scenario.overtaking.cars
+    asked = any(each.kind == "lane-change" for each in scenario.events)
+    if cars == 0 or asked or scenario.actors or scenario.stream.cars:
+        return math.nan
+    places = [events.first + number * events.spacing for number in range(cars)]
+    return float(CHANGES_PER_EVENT * sum(place < length for place in places))
+
+
+def _scenario(material: StudyMaterial) -> Scenario | None:
+    """The scenario of a study, or the one that its records tell of."""
+    configuration = material.study.configuration
+    told = configuration.get("scenario_content")
+    told = told or next((each.get("scenario") for each in material.metadata), None)
+    if isinstance(told, Mapping):
+        return scenario_of(told)
+    name = configuration.get("scenario", PAPERS)
+    return scenario_named(name) if name in shipped() else None
 
 
 def tallies(material: StudyMaterial) -> list[Tally]:
     """Return the lane changes planned, completed and dropped per condition."""
-    planned = planned_changes(_course(material))
+    planned = planned_changes(_course(material), _scenario(material))
     trials = material.trials.groupby("condition")
     return [
         Tally(
@@ -154,7 +174,7 @@ def _trials_sentence(material: StudyMaterial) -> str:
 def _changes_sentence(material: StudyMaterial) -> str:
     parts = tallies(material)
     whole = total(parts)
-    if math.isnan(_course(material)):
+    if math.isnan(_course(material)) or math.isnan(whole.planned):
         changes = plural(whole.completed, "lane change")
         verb = "was" if whole.completed == 1 else "were"
         return f"{changes} {verb} completed; {_dropped(whole)}."
@@ -164,8 +184,9 @@ def _changes_sentence(material: StudyMaterial) -> str:
         )
     fewest = min(each.completed / each.planned for each in parts)
     text = (
-        f"Of {plural(whole.planned, 'planned lane change')} {whole.completed} were "
-        f"completed ({percent(whole.completed, whole.planned)}); {_dropped(whole)}."
+        f"Of {plural(int(whole.planned), 'planned lane change')} {whole.completed} "
+        f"were completed ({percent(whole.completed, whole.planned)}); "
+        f"{_dropped(whole)}."
     )
     if fewest == 1.0:
         return text
@@ -174,7 +195,7 @@ def _changes_sentence(material: StudyMaterial) -> str:
     each_of = "each " if len(least) > 1 else ""
     return (
         f"{text} Fewest were completed in {where}: {each_of}{least[0].completed} of "
-        f"{least[0].planned}."
+        f"{least[0].planned:.0f}."
     )
 
 
