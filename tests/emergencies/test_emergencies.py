@@ -22,6 +22,7 @@ from costeer.emergencies.outcome import EmergencyRow, drive_of, outcome_of
 from costeer.emergencies.report import write_report
 from costeer.emergencies.run import drive_all, num_drives, prepare, worst_of
 from costeer.loop.trial import simulate_trial
+from costeer.plant.place import BARRIER, CAR, NO_CONTACT
 from costeer.records.columns import TrialRecord
 from costeer.scenarios.reading import checked
 from costeer.study.rates import wilson_interval
@@ -66,6 +67,32 @@ def test_who_drives_past_in_another_lane_has_the_distance_between_the_bodies() -
     assert math.isnan(row.smallest_time)  # it was never in the way
     assert not row.collided
     assert math.isnan(row.reaction_time)
+
+
+@pytest.mark.parametrize(
+    ("place", "across", "contact", "hit"),
+    [
+        (97.3, 0.0, CAR, "obstacle"),
+        (97.3, 1.9, CAR, "obstacle"),
+        (97.3, 3.5, CAR, "car"),
+        (90.0, 0.0, CAR, "car"),
+        (97.3, 0.0, BARRIER, "barrier"),
+        (97.3, 0.0, NO_CONTACT, ""),
+    ],
+)
+def test_what_was_hit_is_what_is_touched_at_the_end(
+    place: float, across: float, contact: float, hit: str
+) -> None:
+    # Half an obstacle and half a car are 2.75 m along and 1.775 m across.
+    usual = made_up().columns
+    position, contacts = usual["longitudinal_position"].copy(), usual["contact"].copy()
+    position[-1], contacts[-1] = place, contact
+    record = made_up(
+        longitudinal_position=position,
+        lateral_position=np.full(len(position), across),
+        contact=contacts,
+    )
+    assert outcome(record).hit == hit
 
 
 def test_smallest_time_is_gap_over_speed_while_the_obstacle_is_in_the_way() -> None:

@@ -30,6 +30,10 @@ SETTLED_OFFSET, SETTLED_TIME = 0.3, 2.0
 
 _CAR_LENGTH, _CAR_WIDTH = KINDS["car"]
 
+_TOUCHING = 0.5
+"""Gap below which the obstacle is what was hit [m]. Source: assumed; a car that stands
+askew reaches farther across than its width."""
+
 ROAD = RoadParameters()
 """Lanes of the road on which emergencies are driven."""
 
@@ -50,7 +54,7 @@ class EmergencyRow(NamedTuple):
         lane_is_free: Whether nothing drove in the lane beside.
         participant: Number of the driver.
         collided: Whether the car hit obstacle, other car or barrier.
-        hit: What it hit: "", "car" (the obstacle too) or "barrier".
+        hit: What it hit: "", "obstacle", "car" or "barrier".
         smallest_distance: Between car and obstacle, as rectangles [m].
         smallest_time: To collision, while the obstacle was in the way [s].
         reaction_time: Until wheel or brake differed from the same drive without an
@@ -116,7 +120,7 @@ def outcome_of(
         lane_is_free=drive.lane_is_free,
         participant=drive.participant,
         collided=contact >= BARRIER,
-        hit={BARRIER: "barrier", CAR: "car"}.get(contact, ""),
+        hit=_hit(contact, gaps),
         smallest_distance=float(np.hypot(*np.maximum(gaps, 0.0)).min()),
         smallest_time=_smallest_time(after, gaps),
         reaction_time=_reaction_time(columns, undisturbed, first),
@@ -128,6 +132,13 @@ def outcome_of(
         left_road=_outside(after),
         time_to_settle=_time_to_settle(after, passed),
     )
+
+
+def _hit(contact: float, gaps: tuple[Values, Values]) -> str:
+    """What the car hit at the end; it stands askew, so that it touches from some way."""
+    if contact == CAR and max(gaps[0][-1], gaps[1][-1]) < _TOUCHING:
+        return "obstacle"
+    return {BARRIER: "barrier", CAR: "car"}.get(contact, "")
 
 
 def _filled(record: TrialRecord) -> dict[str, Values]:

@@ -16,6 +16,7 @@ from costeer.emergencies.run import WORST, worst_name, worst_of, write_outcome
 from costeer.methods.conditions import MANUAL
 from costeer.methods.registry import method_named
 from costeer.pages.frame import Section, picture, render_page, write_figures
+from costeer.pages.numerals import plural
 from costeer.pages.style import styled
 from costeer.pages.tables import Table, versions_table
 
@@ -83,7 +84,8 @@ def _looked_at(settings: Settings, rows: Rows) -> list[str]:
     speeds = " and ".join(f"{each * 3.6:.0f}" for each in SPEEDS)
     times = ", ".join(f"{each:g}" for each in TIMES)
     return [
-        f"{settings.drivers} virtual drivers at {speeds} km/h, {len(rows)} drives.",
+        f"{plural(settings.drivers, 'virtual driver')} at {speeds} km/h, {len(rows)} "
+        "drives. What a drive was meant to come to is not always what it came to.",
         f"An obstacle half a lane wide appeared {times} s ahead, in the lane driven in "
         "or changed to; in half of the drives a car drove in the other lane.",
         f"Conditions: {', '.join(conditions_of(rows))}; method {_method(settings)}.",
@@ -130,7 +132,8 @@ def _outcomes(rows: Rows) -> list[tuple[str, str]]:
             ]
             if own:
                 parts.append(f"{name} {_share(own)}")
-        told.append((f"Collisions, ({number}) {words}", "; ".join(parts) + "."))
+        if parts:
+            told.append((f"Collisions, meant as ({number}) {words}", "; ".join(parts)))
     return told
 
 
