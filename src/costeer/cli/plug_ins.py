@@ -204,7 +204,7 @@ def tell_of_bends(
     if bent:
         note(
             f"costeer: {', '.join(bent)} has bends, and the network that comes with "
-            "costeer has seen straight roads alone: it triggers falsely there about "
-            "once in ten kilometres, more often than on straight ones; see "
-            "docs/intention.md"
+            "costeer has seen straight roads alone: it triggers falsely more often "
+            "there, in bends of 500 m and more about once in ten kilometres, in "
+            "tighter ones more often still; see docs/intention.md"
         )

@@ -135,7 +135,7 @@ def outcome_of(
 
 
 def _hit(contact: float, gaps: tuple[Values, Values]) -> str:
-    """What the car hit at the end; it stands askew, so that it touches from some way."""
+    """What the car hit at the end; it may stand askew and touch from some way."""
     if contact == CAR and max(gaps[0][-1], gaps[1][-1]) < _TOUCHING:
         return "obstacle"
     return {BARRIER: "barrier", CAR: "car"}.get(contact, "")

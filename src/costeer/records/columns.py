@@ -175,7 +175,7 @@ COLUMNS: tuple[Column, ...] = (
     ),
     _code(
         "lane",
-        "lane of the centre of gravity: 0 right, 1 left",
+        "lane of the centre of gravity, from the right: 0, 1 ...",
         "measurement.lane",
         "swapped",
     ),
