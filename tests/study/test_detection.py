@@ -120,6 +120,19 @@ def test_a_trigger_before_the_decision_is_false() -> None:
     assert verdicts(decided(columns, (10.4, 17.0, RIGHT))) == [TRUE]
 
 
+@pytest.mark.parametrize(
+    ("before_end", "meant", "found"),
+    [(4.9, True, []), (4.9, False, [FALSE]), (5.1, True, [FALSE]), (0.1, True, [])],
+)
+def test_what_the_end_of_the_record_cuts_off_is_not_judged(
+    before_end: float, meant: bool, found: list[str]
+) -> None:
+    end = float(drive()["time"][-1])
+    spans = [(end - 8.0, end, RIGHT)] if meant else []
+    columns = decided(drive(end - before_end, hold=0.05), *spans)
+    assert verdicts(columns) == found
+
+
 def test_no_trigger_is_counted_while_a_path_is_followed() -> None:
     columns = drive(10.5, 14.5, mode="lane_keeping")
     columns = decided(columns, (8.0, 17.0, RIGHT))

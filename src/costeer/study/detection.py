@@ -81,7 +81,9 @@ def detect(
         if _intended(columns, crossing.time, crossing.direction)
     )
     rows = _merged(columns["time"], _onsets(columns), parameters.trigger_merge)
-    triggers = [_judged(columns, parameters, crossings, row) for row in rows]
+    judged = [_judged(columns, parameters, crossings, row) for row in rows]
+    latest = float(columns["time"][-1]) - parameters.early_horizon
+    triggers = [each for each in judged if not _is_open(columns, each, latest)]
     return Detection(triggers=tuple(triggers), crossings=crossings)
 
 
@@ -168,6 +170,18 @@ def _merged(time: np.ndarray, rows: list[int], gap: float) -> list[int]:
         for place, row in enumerate(rows)
         if place == 0 or time[row] - time[rows[place - 1]] > gap
     ]
+
+
+def _is_open(columns: Columns, trigger: Trigger, latest: float) -> bool:
+    """Whether the record ends before the crossing that the driver means may come.
+
+    Args:
+        columns: Of the record.
+        trigger: As it was judged.
+        latest: From then on a crossing may come after the end [s].
+    """
+    means = _intended(columns, trigger.time, trigger.direction)
+    return trigger.verdict == FALSE and trigger.time > latest and means
 
 
 def _asked_side(columns: Columns, parameters: MeasureParameters, row: int) -> int:
