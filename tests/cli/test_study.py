@@ -75,6 +75,20 @@ def test_a_speed_may_have_its_unit(tmp_path: Path) -> None:
     assert "speed: 20.0" in (tmp_path / "study.yaml").read_text(encoding="utf-8")
 
 
+def test_an_order_that_never_came_is_told_with_how_often(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    actor = (
+        "{name: ahead, at: 200, speed: 78 km/h, orders: [{when: {gap: 20}, lane: 1}]}"
+    )
+    file = tmp_path / "late.yaml"
+    file.write_text(f"name: late\nspeed: 80 km/h\nactors:\n  - {actor}\n")
+    given = ["study", "--scenario", str(file), *QUICK, "200", "--no-report"]
+    assert main([*given, "--intention", "scripted", "--out", str(tmp_path / "a")]) == 0
+    told = "in 2 of 2 drives: ahead never got its order (lane 1)"
+    assert told in capsys.readouterr().err
+
+
 @pytest.mark.usefixtures("_fake")
 def test_too_few_participants_for_the_square_are_told(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from collections import Counter
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -19,6 +20,9 @@ from costeer.cli.scaled import (
     tell_merge,
 )
 from costeer.cli.trial_progress import study_progress
+
+_LOOKED_AT = 60
+"""Records in which it is looked for what the scenario had in store [-]."""
 
 if TYPE_CHECKING:
     from costeer.scale.shard import Shard
@@ -126,7 +130,22 @@ def study(
     )
     outcome, seconds = _run(out, settings, jobs, report, scale)
     _print_outcome(outcome, seconds)
+    _tell_unmet(outcome)
     _print_end(outcome, scale.shard, report)
+
+
+def _tell_unmet(outcome: StudyOutcome) -> None:
+    """Say what of the scenario the first drives with a record did not meet."""
+    from costeer.records.record import read_record
+    from costeer.scenarios.unmet import may_be_unmet, unmet
+    from costeer.study.material import find_records
+
+    paths = [*find_records(outcome.folder).values()][:_LOOKED_AT]
+    if not paths or not may_be_unmet(read_record(paths[0], ()).metadata):
+        return
+    found = Counter(line for path in paths for line in unmet(read_record(path)))
+    for line, times in found.most_common(5):
+        note(f"costeer: in {times} of {len(paths)} drives: {line}")
 
 
 def _warn_if_unbalanced(settings: StudySettings) -> None:

@@ -20,6 +20,12 @@ crossed, at the latest [s]. Source: assumed; nearly all virtual drivers take les
 Columns = Mapping[str, NDArray[np.float64]]
 
 
+def may_be_unmet(about: Mapping[str, Any]) -> bool:
+    """Whether a scenario, as a record tells of it, has actors or asks for something."""
+    told = about.get("scenario")
+    return isinstance(told, Mapping) and bool(told.get("actors") or told.get("events"))
+
+
 def unmet(record: TrialRecord) -> list[str]:
     """What a scenario had in store and a drive did not meet, in words.
 
@@ -28,6 +34,8 @@ def unmet(record: TrialRecord) -> list[str]:
     """
     about: Any = record.metadata  # Any: from JSON
     columns, found = record.columns, list[str]()
+    if not may_be_unmet(about):
+        return []
     scenario = scenario_of(about["scenario"])
     own_length = about["configuration"]["car"]["length"]
     for number, actor in enumerate(scenario.actors, start=1):
