@@ -24,7 +24,8 @@ def test_every_field_of_the_description_is_explained_once() -> None:
     _, _, text = TEXT.partition("## Description")
     told = [line.split("|")[1] for line in text.splitlines() if line.startswith("| `")]
     plugged = ("method_version", "method_source_hash", "predictor", "torque_faults")
-    plugged = (*plugged, "network_form")
+    plugged = (*plugged, "network_form", "scenario", "mistakes")
+    plugged = (*plugged, "other_cars", "outcome")
     some = ("markers", "intention_source", "head_tracker", "study_hash")
     wanted = sorted((*METADATA_FIELDS, *CLOCK_FIELDS, *plugged, *some))
     assert sorted(re.findall(r"`(\w+)`", " ".join(told))) == wanted
