@@ -84,7 +84,9 @@ def test_a_road_of_a_file_is_driven_as_fast_as_it_allows(
     assert "too tight for 90 km/h; give 208 m" in capsys.readouterr().err
     assert not made.exists()
     assert main([*asked, "--speed", "50km/h"]) == 0
-    assert "m of the file's in every 100 m" in capsys.readouterr().err
+    shown, first = capsys.readouterr().err, read_scenario(made).overtaking.first
+    assert "m of the file's in every 100 m" in shown
+    assert f"a slower car to overtake appears at {first:g} m; take" in shown
     made.unlink()
     assert main(asked) == 0
     # The left lane has 101.75 m: sqrt(3 * 101.75) is 62.9 km/h.

@@ -211,7 +211,10 @@ def _name_for(file: Path) -> str:
 
 
 def _write_new(file: Path, text: str) -> None:
-    parsed(text, str(file))
+    overtaking = parsed(text, str(file)).overtaking
+    if overtaking.cars:
+        told = f"costeer: a slower car to overtake appears at {overtaking.first:g} m"
+        note(f"{told}; take overtaking out of {file} to drive without")
     file.parent.mkdir(parents=True, exist_ok=True)
     write_text(file, text)
     typer.echo(file)
