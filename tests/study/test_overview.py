@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+import pandas as pd
 import pytest
 
 from costeer.methods.conditions import CONDITION_NAMES
@@ -14,6 +15,7 @@ from costeer.study.material import StudyMaterial
 from costeer.study.reporting import overview
 from costeer.study.reporting.event_tables import lane_changes_table
 from costeer.study.reporting.overview import planned_changes, tallies, total
+from costeer.study.reporting.traffic_tables import zones_table
 
 
 @pytest.mark.parametrize(
@@ -51,6 +53,18 @@ def test_nobody_planned_what_the_scenario_does_not(material: StudyMaterial) -> N
     assert sentence.startswith(f"{completed} lane changes were completed; ")
     table = lane_changes_table(study)
     assert {row[2] for row in table.rows} == {row[4] for row in table.rows} == {NOTHING}
+
+
+def test_angles_in_zones_are_in_degrees(material: StudyMaterial) -> None:
+    measures = {"sdlp": 0.25, "steering_beyond_curve_rms": math.pi / 18.0}
+    rows = [("bend", "manual", name, each) for name, each in measures.items()]
+    told = pd.DataFrame(rows, columns=["zone", "condition", "measure", "value"])
+    table = zones_table(material._replace(scenario=told))
+    assert table is not None
+    (row,) = [each for each in table.rows if each[1] == "manual"]
+    cells = dict(zip(table.header, row, strict=True))
+    assert cells["Angle beyond curve, RMS [deg]"].startswith("10.00")
+    assert cells["SDLP [m]"].startswith("0.250")
 
 
 def test_the_whole_is_the_sum_of_its_conditions(material: StudyMaterial) -> None:
