@@ -9,7 +9,7 @@ import pytest
 
 from costeer.methods.conditions import CONDITION_NAMES
 from costeer.pages.numerals import NOTHING
-from costeer.scenarios.definition import Event, Overtaking, Scenario
+from costeer.scenarios.definition import Actor, Event, Overtaking, Scenario, Stream
 from costeer.scenarios.reading import scenario_named
 from costeer.study.material import StudyMaterial
 from costeer.study.reporting import overview
@@ -36,7 +36,19 @@ def test_two_lane_changes_are_planned_for_each_event(
         (Scenario("x"), math.nan),
         ("cut-in", math.nan),
         ("dense-traffic", math.nan),
-        (Scenario("x", events=(Event("lane-change", 500.0, side="right"),)), math.nan),
+        (Scenario("x", overtaking=Overtaking(), stream=Stream(cars=4)), math.nan),
+        (
+            Scenario("x", overtaking=Overtaking(), actors=(Actor("a", at=90.0),)),
+            math.nan,
+        ),
+        (
+            Scenario(
+                "x",
+                overtaking=Overtaking(),
+                events=(Event("lane-change", 500.0, side="right"),),
+            ),
+            math.nan,
+        ),
     ],
 )
 def test_the_scenario_says_what_is_planned(
