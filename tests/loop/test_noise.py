@@ -61,7 +61,7 @@ def test_a_trial_that_outlasts_its_numbers_is_the_one_of_more_numbers(
     monkeypatch.setattr(trial, "driver_noise", noted)
     usual = trial.simulate_trial(setup)
     assert len(drawn) == 1
-    assert drawn[0] < 1.2 * len(usual.columns["time"])
+    assert drawn[0] < 1.1 * len(usual.columns["time"])
     monkeypatch.setattr(trial, "LIKELY_SHARE", 2.0)
     late = trial.simulate_trial(setup)
     assert drawn[1] < len(late.columns["time"]) < drawn[2]

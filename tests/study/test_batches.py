@@ -6,11 +6,13 @@ from pathlib import Path
 
 import pytest
 
+from costeer.loop.trial import simulate_trial
 from costeer.study import batches
 from costeer.study.batches import Work, named
-from costeer.study.configuration import PUBLISHED_STUDY
+from costeer.study.configuration import PUBLISHED_STUDY, trial_setup
 from costeer.study.design import Trial
 from costeer.study.run import ONE_MACHINE, run_study
+from costeer.study.trials import likely_length
 
 TRIALS = [Trial(k, "strong-normal", 1) for k in range(1, 20)]
 
@@ -25,10 +27,42 @@ def test_small_studies_are_done_trial_by_trial(monkeypatch: pytest.MonkeyPatch) 
     assert work.done(TRIALS[:2]) == alone.done(TRIALS[:2]) == TRIALS[:2]
 
 
+def test_trials_that_last_as_long_are_driven_together(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(batches, "TOGETHER_FROM", 1)
+    two_each = [Trial(who, name, 1) for who in range(1, 17) for name in ("a", "b")]
+    work = Work(
+        one=lambda trial: trial, several=list, lasting=lambda t: t.participant % 4
+    )
+    made = work.batches(two_each)
+    assert [{t.participant % 4 for t in batch} for batch in made] == [
+        {0},
+        {1},
+        {2},
+        {3},
+    ]
+    assert sorted(t for batch in made for t in batch) == sorted(two_each)
+    asked: list[Trial] = []
+    Work(lambda t: t, list, lambda t: asked.append(t) or 0.0).batches(two_each)
+    assert len(asked) == 16  # a driver's pace is the same in all conditions
+
+
+def test_a_trial_likely_ends_within_its_likely_length() -> None:
+    settings = PUBLISHED_STUDY._replace(length=2000.0)
+    for who in range(1, 9):
+        trial = Trial(who, "manual", 1)
+        record = simulate_trial(trial_setup(settings, trial))
+        rows = len(record.columns["time"])
+        assert rows < likely_length(settings, trial) < 1.1 * rows
+    broken = settings._replace(car="no such car")
+    assert likely_length(broken, trial) == 0
+
+
 def test_an_error_of_a_batch_names_where_it_is() -> None:
     assert named(TRIALS[:1]) == "participant 1, strong-normal: "
     assert (
-        named(TRIALS[:8]) == "participant 1, strong-normal or one of the 7 after it: "
+        named(TRIALS[:8]) == "participant 1, strong-normal or one of 7 driven with it: "
     )
 
 

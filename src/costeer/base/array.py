@@ -17,11 +17,13 @@ from typing import Any, TypeAlias, TypeVar, cast
 
 import numpy as np
 from numba import types
-from numba.extending import overload, register_jitable
+from numba.extending import overload
 
 import costeer.base.replace
 import costeer.base.whole  # noqa: F401  what compiled code does with named tuples
-from costeer.base import lanes
+from costeer.base import elementary, lanes
+from costeer.base.marks import compiled as compiled
+from costeer.base.marks import inlined as inlined
 
 Real: TypeAlias = float
 """A float, an array of them or a traced value: annotations show the scalar."""
@@ -29,40 +31,9 @@ Real: TypeAlias = float
 Flag: TypeAlias = bool
 """A bool, an array of them or a traced value."""
 
-Function = TypeVar("Function", bound=Callable[..., Any])
 State = TypeVar("State")
 Value = TypeVar("Value")
 Arguments = TypeVar("Arguments")
-
-
-_INNER = {"no_cfunc_wrapper": True, "no_cpython_wrapper": True}
-"""Functions that only compiled code calls need no entry from outside: a fifth of the
-time that the compiler takes."""
-
-
-def compiled(function: Function) -> Function:
-    """Mark a pure function as one that compiled code may call.
-
-    The function itself stays plain Python, so the Python and JAX engines run it as
-    it is written; Numba compiles it into whatever calls it.
-
-    Example:
-        >>> import costeer
-        >>> @costeer.compiled
-        ... def spring(stiffness, angle):
-        ...     return -stiffness * angle
-        >>> spring(2.0, 0.5)
-        -1.0
-    """
-    return register_jitable(**_INNER)(function)
-
-
-def inlined(function: Function) -> Function:
-    """Like `compiled`, for a function that hands large records on: no call is left.
-
-    What LLVM does not inline by itself copies every tuple through memory.
-    """
-    return register_jitable(forceinline=True, **_INNER)(function)
 
 
 def _numpy_like(value: Any) -> Any:  # Any: this is where engines meet
@@ -240,28 +211,16 @@ def add_scaled(state: State, rate: State, step: Real) -> State:
     return cast("State", kind(*(value + step * slope for value, slope in fields)))
 
 
-_MATH: dict[Callable[..., Any], Callable[..., Any]] = {
-    tanh: math.tanh,
-    sin: math.sin,
-    cos: math.cos,
-    tan: math.tan,
-    atan: math.atan,
-    exp: math.exp,
-    log: math.log,
-}
-
-
 def _bind(function: Callable[..., Any], target: Callable[..., Any]) -> None:
     """Let Numba use `target` where the source says `function`."""
-    apart = lanes.each(target)
 
     @overload(function, strict=False)
     def _(x: Any) -> Any:
-        return (lambda x: apart(x)) if lanes.in_lanes(x) else (lambda x: target(x))
+        return lambda x: target(x)
 
 
-for _function, _target in _MATH.items():
-    _bind(_function, _target)
+for _function in (tanh, sin, cos, tan, atan, exp, log):
+    _bind(_function, getattr(elementary, _function.__name__))
 
 
 _TOGETHER: dict[Callable[..., Any], tuple[Callable[..., Any], Any]] = {

@@ -137,6 +137,49 @@ def select(typing: Any, condition: Any, if_true: Any, if_false: Any) -> Any:
     return whole(condition, if_true, if_false), emit
 
 
+def choose(condition: bool, if_true: float, if_false: float) -> float:
+    """One of two numbers, in compiled code: for each lane, or for a plain number."""
+    return if_true if condition else if_false
+
+
+@extending.overload(choose, strict=False)
+def _choose(condition: Any, if_true: Any, if_false: Any) -> Any:
+    if isinstance(condition, Mask):
+        return lambda condition, if_true, if_false: select(condition, if_true, if_false)
+    return lambda condition, if_true, if_false: if_true if condition else if_false
+
+
+def anywhere(flag: bool) -> bool:
+    """Whether a flag is true, in any lane if there are eight."""
+    return flag
+
+
+@extending.overload(anywhere, strict=False)
+def _anywhere(flag: Any) -> Any:
+    return (lambda flag: any_lane(flag)) if is_vector(flag) else (lambda flag: flag)
+
+
+@intrinsic
+def power_of_two(typing: Any, count: Any) -> Any:
+    """2 to a whole number from -1022 to 1023, for each lane or for a plain number.
+
+    Added to 1.5 * 2**52, the number stands in the low bits; moved by 52 places it is
+    the exponent of a double.
+    """
+
+    def emit(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+        number, vector = args[0].type, is_vector(count)
+        bits = ir.VectorType(ir.IntType(64), WIDTH) if vector else ir.IntType(64)
+        base, places = (
+            ir.Constant(kind, [value] * WIDTH if vector else value)
+            for kind, value in ((number, 1.5 * 2.0**52 + 1023.0), (bits, 52))
+        )
+        moved = builder.shl(builder.bitcast(builder.fadd(args[0], base), bits), places)
+        return builder.bitcast(moved, number)
+
+    return count(count), emit
+
+
 def _joined(one: Any, other: Any) -> Any:
     """The type of what is chosen from two, lane by lane.
 

@@ -50,8 +50,8 @@ class Block(NamedTuple):
     Attributes:
         parameters: Of each, without the shared ones, `(number, lane)`.
         state: At the start, `(number, lane)`.
-        noise: Random numbers, `(lane, time, draw)`.
-        rows: Filled, `(lane, time, column)`.
+        noise: Random numbers, `(lane, draw, time)`.
+        rows: Filled, `(lane, column, time)`.
         counts: Rows of each trial, filled, `(lane,)`.
     """
 
@@ -95,18 +95,18 @@ def joined(each: Any, shared: Any) -> Any:  # Any: parameters in lanes
 def _drawn(noise: Numbers, first: int, count: int, drawn: Numbers) -> None:
     """Bring random numbers of some steps into the order of the lanes."""
     for lane in range(noise.shape[0]):
-        for step in range(count):
-            for draw in range(noise.shape[2]):
-                drawn[step, draw, lane] = noise[lane, first + step, draw]
+        for draw in range(noise.shape[1]):
+            for step in range(count):
+                drawn[step, draw, lane] = noise[lane, draw, first + step]
 
 
 @compiled
 def _written(filled: Numbers, rows: Numbers, first: int, count: int) -> None:
     """Bring the rows of some steps into the order of the trials."""
     for lane in range(rows.shape[0]):
-        for step in range(count):
-            for column in range(rows.shape[2]):
-                rows[lane, first + step, column] = filled[step, column, lane]
+        for column in range(rows.shape[1]):
+            for step in range(count):
+                rows[lane, column, first + step] = filled[step, column, lane]
 
 
 @compiled
@@ -129,11 +129,11 @@ def run_block(
         block: Random numbers, rows and their counts.
     """
     noise, rows, counts = block.noise, block.rows, block.counts
-    drawn = np.empty((BUFFER, noise.shape[2], lanes.WIDTH))
-    filled = np.empty((BUFFER, rows.shape[2], lanes.WIDTH))
+    drawn = np.empty((BUFFER, noise.shape[1], lanes.WIDTH))
+    filled = np.empty((BUFFER, rows.shape[1], lanes.WIDTH))
     standing, over = lanes.spread(0.0), lanes.spread(False)
     length = parameters.road.length
-    steps, first = noise.shape[1], 0
+    steps, first = noise.shape[2], 0
     while first < steps and not lanes.all_lanes(over):
         count = min(BUFFER, steps - first)
         _drawn(noise, first, count, drawn)

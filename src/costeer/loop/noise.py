@@ -27,14 +27,21 @@ def driver_noise(
         condition: Its name; every condition is another drive.
         num_steps: Control steps.
     """
+    noise = np.empty((len(DriverNoise._fields), num_steps))
+    draw_noise(seed, participant, condition, noise)
+    return np.ascontiguousarray(noise.T)
+
+
+def draw_noise(
+    seed: int, participant: int, condition: str, noise: NDArray[np.float64]
+) -> None:
+    """Draw the random numbers of `driver_noise` into an array, `(draw, num_steps)`."""
     name = zlib.crc32(condition.encode())
     entropy = [seed, _TRIAL_STREAM, participant, name]
-    streams = np.random.SeedSequence(entropy).spawn(len(DriverNoise._fields))
-    noise = np.empty((num_steps, len(streams)))
-    for column, stream in enumerate(streams):
+    streams = np.random.SeedSequence(entropy).spawn(len(noise))
+    for draw, stream in enumerate(streams):
         generator = np.random.Generator(np.random.PCG64(stream))
-        if column < NORMAL_DRAWS:
-            noise[:, column] = generator.standard_normal(num_steps)
+        if draw < NORMAL_DRAWS:
+            generator.standard_normal(out=noise[draw])
         else:
-            noise[:, column] = generator.random(num_steps)
-    return noise
+            generator.random(out=noise[draw])

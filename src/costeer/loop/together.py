@@ -23,7 +23,7 @@ from costeer.drivers.population import VIRTUAL
 from costeer.intention.predictors.chosen import ChosenPredictor
 from costeer.loop.lanes import SHARED, Block, joined, own, run_block, stacked
 from costeer.loop.network import trial_network
-from costeer.loop.noise import driver_noise
+from costeer.loop.noise import draw_noise
 from costeer.loop.parameters import Bare, LoopParameters, bare_of, without
 from costeer.loop.rollout import on_bare_road, row_width
 from costeer.loop.rows import LoopRule, loop_rule, rules_of
@@ -36,11 +36,10 @@ from costeer.loop.scenario import (
 from costeer.loop.step import Rules, initial_state
 from costeer.loop.tick import Network, Script
 from costeer.loop.trial import (
-    LIKELY_SHARE,
-    SLOWEST_SHARE,
+    likely_steps,
     record_of,
     simulate_trial,
-    steps_of,
+    slowest_steps,
     trial_predictor,
     trial_script,
 )
@@ -127,14 +126,14 @@ def _driven_together(
     trials: Sequence[_Prepared],
 ) -> dict[int, TrialRecord | Exception]:
     """Drive up to eight trials; lanes that are left over repeat the last one."""
-    for share in (LIKELY_SHARE, SLOWEST_SHARE):
-        steps = max(steps_of(each.setup, share) for each in trials)
+    likely = max(likely_steps(each.setup, each.parameters) for each in trials)
+    for steps in (likely, max(slowest_steps(each.setup) for each in trials)):
         block = _run([*trials, *[trials[-1]] * (WIDTH - len(trials))], steps)
         if block.counts.all():
             break
     counts = np.where(block.counts > 0, block.counts, steps)
     done = zip(trials, block.rows, counts, strict=False)
-    return {each.place: _record(each, rows[:count]) for each, rows, count in done}
+    return {each.place: _record(each, rows[:, :count].T) for each, rows, count in done}
 
 
 def _record(trial: _Prepared, rows: Rows) -> TrialRecord | Exception:
@@ -151,15 +150,13 @@ def _run(trials: Sequence[_Prepared], steps: int) -> Block:
     lean = [without(parameters, _BARE) for parameters in all_of]
     states = [on_bare_road(initial_state(rules, parameters)) for parameters in all_of]
     shapes = (
-        (WIDTH, steps, len(DriverNoise._fields)),
-        (WIDTH, steps, row_width(method, all_of[0])),
+        (WIDTH, len(DriverNoise._fields), steps),
+        (WIDTH, row_width(method, all_of[0]), steps),
     )
     noise, rows = (_room(name, shape) for name, shape in zip("nr", shapes, strict=True))
     for lane, each in enumerate(trials):
         setup = each.setup
-        noise[lane] = driver_noise(
-            setup.seed, setup.participant, setup.condition, steps
-        )
+        draw_noise(setup.seed, setup.participant, setup.condition, noise[lane])
     block = Block(
         parameters=np.stack([packed(own(each)) for each in lean], axis=1),
         state=np.stack([packed(each) for each in states], axis=1),

@@ -52,9 +52,9 @@ from costeer.scenarios.world import sizes_of
 SLOWEST_SHARE = 0.5
 """A trial ends at the latest when a car at this share of its speed would arrive [-]."""
 
-LIKELY_SHARE = 0.9
+LIKELY_SHARE = 0.97
 """Hardly anybody on a road without other cars is slower than this share of the speed
-[-]. Decides what a trial costs, and nothing else."""
+that he prefers [-]. Decides what a trial costs, and nothing else."""
 
 
 def simulate_trial(setup: TrialSetup, engine: str = "numba") -> TrialRecord:
@@ -117,8 +117,8 @@ def _driven(
     again with all that it may need.
     """
     alone = not num_cars(parameters.fleet) and engine != "jax"
-    for share in (LIKELY_SHARE, SLOWEST_SHARE) if alone else (SLOWEST_SHARE,):
-        steps = steps_of(setup, share)
+    slowest = slowest_steps(setup)
+    for steps in (likely_steps(setup, parameters), slowest) if alone else (slowest,):
         noise = driver_noise(setup.seed, setup.participant, setup.condition, steps)
         rows = _run(setup, parameters, predictor, noise, engine)
         if len(rows) < steps:
@@ -126,9 +126,22 @@ def _driven(
     return rows
 
 
-def steps_of(setup: TrialSetup, share: Real) -> int:
-    """Control steps until a car at this share of its speed arrives [-]."""
-    return int(np.ceil(setup.length / (share * setup.speed) / DT))
+def slowest_steps(setup: TrialSetup) -> int:
+    """Control steps after which a trial ends wherever the car is."""
+    return _steps_at(setup, SLOWEST_SHARE * setup.speed)
+
+
+def likely_steps(setup: TrialSetup, parameters: LoopParameters[Any]) -> int:
+    """Control steps within which a trial has likely ended."""
+    driver, speed = parameters.driver, setup.speed
+    if isinstance(driver, DriverParameters):
+        speed = driver.longitudinal.preferred_speed
+    speed = max(LIKELY_SHARE * speed, SLOWEST_SHARE * setup.speed)
+    return _steps_at(setup, speed)
+
+
+def _steps_at(setup: TrialSetup, speed: Real) -> int:
+    return int(np.ceil(setup.length / speed / DT))
 
 
 def trial_script(setup: TrialSetup) -> Script:

@@ -111,7 +111,7 @@ def record_columns(
     return {
         column.name: _as_kind(
             column,
-            np.ascontiguousarray(rows[:, place]),
+            rows[:, place].copy(),
             judged if column.name == _VERDICT else helped,
         )
         for place, column in enumerate(columns)

@@ -14,16 +14,23 @@ TOGETHER_FROM = 500
 half a minute more of compiling. No number depends on it."""
 
 
+def _unknown(_: Trial) -> float:
+    """How long a trial lasts, if nobody can tell."""
+    return 0.0
+
+
 class Work(NamedTuple):
     """How trials are finished; a worker elsewhere can do it.
 
     Attributes:
         one: Finishes one trial.
         several: Finishes trials together; None where they cannot be.
+        lasting: How long a trial of the same participant likely lasts, in any unit.
     """
 
     one: Callable[[Trial], TrialDone]
     several: Callable[[Sequence[Trial]], list[TrialDone]] | None = None
+    lasting: Callable[[Trial], float] = _unknown
 
     def done(self, trials: Sequence[Trial]) -> list[TrialDone]:
         """Finish some trials."""
@@ -32,12 +39,20 @@ class Work(NamedTuple):
         return self.several(trials)
 
     def batches(self, trials: Sequence[Trial]) -> list[Sequence[Trial]]:
-        """The trials in batches: of one, or of as many as are driven together."""
-        size = WIDTH if self.several and len(trials) >= TOGETHER_FROM else 1
-        return [trials[first : first + size] for first in range(0, len(trials), size)]
+        """The trials in batches: of one, or of as many as are driven together.
+
+        Those that last as long come together: a batch lasts as long as its longest.
+        """
+        if self.several is None or len(trials) < TOGETHER_FROM:
+            return [[trial] for trial in trials]
+        one_of = {trial.participant: trial for trial in trials}
+        lasting = {who: self.lasting(trial) for who, trial in one_of.items()}
+        ordered = sorted(trials, key=lambda trial: lasting[trial.participant])
+        places = range(0, len(trials), WIDTH)
+        return [ordered[first : first + WIDTH] for first in places]
 
 
 def named(trials: Sequence[Trial]) -> str:
     """Which trials an error came from."""
-    others = f" or one of the {len(trials) - 1} after it" if len(trials) > 1 else ""
+    others = f" or one of {len(trials) - 1} driven with it" if len(trials) > 1 else ""
     return f"participant {trials[0].participant}, {trials[0].condition}{others}: "

@@ -45,6 +45,7 @@ from costeer.study.trials import (
     finish_trial,
     keep_result,
     kept_trial,
+    likely_length,
     resumed_trial,
     rows_of,
     study_trials,
@@ -150,7 +151,8 @@ def run_study(
         with opened_study(Path(out), configuration, command, scale.shard) as folder:
             one = partial(finish_trial, folder, driven, simulate, records=scale.records)
             several = partial(finish_together, folder, driven, records=scale.records)
-            work = Work(one, several if simulate is simulate_trial else None)
+            together = several if simulate is simulate_trial else None
+            work = Work(one, together, partial(likely_length, driven))
             done = _finished(folder, work, pool, progress, scale)
             if scale.shard.total == 1:
                 remove_leftovers(folder.path)  # of workers that were killed

@@ -7,8 +7,9 @@ from functools import partial
 from typing import Any, NamedTuple
 
 from costeer.intention.predictors.registry import PREDICTORS
-from costeer.loop.scenario import TrialSetup
+from costeer.loop.scenario import TrialSetup, loop_parameters
 from costeer.loop.together import simulate_together
+from costeer.loop.trial import likely_steps
 from costeer.methods.conditions import CONDITION_NAMES, MANUAL
 from costeer.methods.registry import METHODS
 from costeer.records.record import TrialRecord, read_record, write_record
@@ -70,6 +71,15 @@ def study_trials(settings: StudySettings) -> list[Trial]:
     places = {name: place for place, name in enumerate(CONDITION_NAMES)}
     trials = plan_trials(settings.participants, settings.conditions)
     return sorted(trials, key=lambda each: (each.participant, places[each.condition]))
+
+
+def likely_length(settings: StudySettings, trial: Trial) -> int:
+    """Control steps that a trial likely lasts; 0 of one that cannot be set up."""
+    try:
+        setup = trial_setup(settings, trial)
+        return likely_steps(setup, loop_parameters(setup))
+    except ValueError:
+        return 0
 
 
 def try_plug_ins(settings: StudySettings, simulate: Simulate) -> None:
