@@ -56,7 +56,7 @@ class Effort(NamedTuple):
         rounds: Times that each thing is run.
         calls: Single calls whose percentiles are taken.
         length: Of the course of a trial [m].
-        batch: Trials in a batch, for each thread.
+        batch: Trials in a batch.
     """
 
     rounds: int
@@ -65,8 +65,8 @@ class Effort(NamedTuple):
     batch: int
 
 
-FULL = Effort(rounds=5, calls=20_000, length=8000.0, batch=3)
-QUICK = Effort(rounds=2, calls=5_000, length=1500.0, batch=1)
+FULL = Effort(rounds=5, calls=20_000, length=8000.0, batch=96)
+QUICK = Effort(rounds=2, calls=5_000, length=1500.0, batch=16)
 
 
 def seconds_of(work: Callable[[], object], rounds: int) -> NDArray[np.float64]:

@@ -3,25 +3,32 @@
 from __future__ import annotations
 
 import sys
+import time
+from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from functools import partial
 
 import numpy as np
 
 from benchmarks.speed.timing import Effort, Outcome, Skipped, figure, seconds_of
+from costeer.base.lanes import WIDTH
 from costeer.loop.jax_rollout import jax_rollouts
 from costeer.loop.noise import driver_noise
 from costeer.loop.parameters import DT
 from costeer.loop.rollout import rollout
 from costeer.loop.scenario import TrialSetup, loop_parameters
 from costeer.loop.tick import INTENTION_SCRIPTED, Script
+from costeer.loop.together import simulate_together
 from costeer.loop.trial import (
     idle_network,
+    likely_steps,
     shipped_network,
     simulate_trial,
     trial_duration,
 )
+from costeer.methods.conditions import CONDITION_NAMES
 from costeer.methods.ibhs import IBHS
+from costeer.records.columns import TrialRecord
 from costeer.scale.jobs import default_jobs
 
 STRONG = TrialSetup(condition="strong-normal", intention="scripted")
@@ -43,31 +50,77 @@ def measure_trials(effort: Effort) -> Outcome:
 
 
 def _one_and_batch(name: str, setup: TrialSetup, effort: Effort) -> Outcome:
-    """Simulate a trial, and several trials on threads, with records made in memory."""
+    """Simulate one trial, then many, with records made in memory."""
     simulated = trial_duration(simulate_trial(setup))
     alone = seconds_of(lambda: simulate_trial(setup), effort.rounds)
-    threads = default_jobs()
-    setups = [
-        setup._replace(participant=n) for n in range(1, threads * effort.batch + 1)
-    ]
-    with ThreadPoolExecutor(threads) as pool:
-        records = list(pool.map(simulate_trial, setups))
-        together = seconds_of(
-            lambda: list(pool.map(simulate_trial, setups)), effort.rounds
-        )
-    driven = sum(trial_duration(record) for record in records)
     length = f"{setup.length / 1000.0:g} km, {simulated:.0f} s of driving"
     return [
         figure("trial", f"one trial, {name}", "s", alone, length),
         figure("trial", f"one trial, {name}", UNIT, simulated / alone),
-        figure(
-            "trial",
-            f"batch, {name}",
-            UNIT,
-            driven / together,
-            f"{len(setups)} trials on {threads} threads",
-        ),
+        *_batches(name, _trials_of_a_study(setup, effort.batch), effort.rounds),
     ]
+
+
+def _trials_of_a_study(setup: TrialSetup, count: int) -> list[TrialSetup]:
+    """Drivers in all conditions, those together that last as long, as study/batches."""
+    conditions = len(CONDITION_NAMES)
+    trials = [
+        setup._replace(
+            participant=1 + number // conditions,
+            condition=CONDITION_NAMES[number % conditions],
+        )
+        for number in range(count)
+    ]
+    return sorted(trials, key=lambda each: likely_steps(each, loop_parameters(each)))
+
+
+def _batches(name: str, trials: list[TrialSetup], rounds: int) -> Outcome:
+    """Many trials one by one and eight at a time, in turn, on one thread and on all.
+
+    What else the machine does so meets all of them.
+    """
+    threads = default_jobs()
+    ways = {
+        f"one by one, {threads} threads": (_one_by_one, threads),
+        f"eight at a time, {threads} threads": (_together, threads),
+        "eight at a time, 1 thread": (_together, 1),
+    }
+    for drive, _ in ways.values():
+        drive(trials[:WIDTH])  # compiled by then
+    found: dict[str, list[float]] = {way: [] for way in ways}
+    for _ in range(rounds):
+        for way, (drive, on) in ways.items():
+            found[way].append(_speed(drive, trials, on))
+    speeds = {way: np.array(each) for way, each in found.items()}
+    apart, eight, single = speeds.values()
+    what = f"batch, {name}"
+    return [
+        *(figure("trial", f"{what}, {way}", UNIT, speeds[way]) for way in ways),
+        figure("trial", f"{what}, eight over one", "x", eight / apart, "in turn"),
+        figure("trial", f"{what}, threads used", "", eight / single / threads),
+    ]
+
+
+def _speed(
+    drive: Callable[[Sequence[TrialSetup]], float],
+    trials: Sequence[TrialSetup],
+    threads: int,
+) -> float:
+    """Driver-seconds per second of trials that are driven in batches of eight."""
+    batches = [trials[k : k + WIDTH] for k in range(0, len(trials), WIDTH)]
+    begun = time.perf_counter()
+    with ThreadPoolExecutor(threads) as pool:
+        driven = sum(pool.map(drive, batches))
+    return driven / (time.perf_counter() - begun)
+
+
+def _one_by_one(trials: Sequence[TrialSetup]) -> float:
+    return sum(trial_duration(simulate_trial(each)) for each in trials)
+
+
+def _together(trials: Sequence[TrialSetup]) -> float:
+    made = simulate_together(trials)
+    return sum(trial_duration(each) for each in made if isinstance(each, TrialRecord))
 
 
 def measure_engines(effort: Effort) -> Outcome:

@@ -109,7 +109,14 @@ def _fits(each: _Prepared) -> Any:  # Any: what trials of a block have in common
     shared = tuple(packed(getattr(parameters, name)).tobytes() for name in SHARED)
     script, network = trial_script(setup), trial_network(setup, parameters, predictor)
     told = script.intention, script.horizon, tuple(script.trigger_times.tolist())
-    return shared, told, id(network.weights), layout_of(parameters)
+    return shared, told, id(network.weights), _kind(parameters)
+
+
+def _kind(value: Any) -> Any:  # Any: types and shapes, nested as the value is
+    """What of nested tuples decides how they lie packed."""
+    if isinstance(value, tuple):
+        return type(value), *map(_kind, value)
+    return type(value), np.shape(value) if isinstance(value, np.ndarray) else ()
 
 
 def _one_by_one(trials: Sequence[_Prepared]) -> dict[int, TrialRecord | Exception]:
@@ -133,7 +140,11 @@ def _driven_together(
             break
     counts = np.where(block.counts > 0, block.counts, steps)
     done = zip(trials, block.rows, counts, strict=False)
-    return {each.place: _record(each, rows[:, :count].T) for each, rows, count in done}
+    # A copy, because the next block fills the same rows.
+    return {
+        each.place: _record(each, rows[:, :count].copy().T)
+        for each, rows, count in done
+    }
 
 
 def _record(trial: _Prepared, rows: Rows) -> TrialRecord | Exception:

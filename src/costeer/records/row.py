@@ -95,7 +95,8 @@ def record_columns(
     """Rows of the loop as the columns of a record.
 
     Args:
-        rows: A number for each column, shape `(time, column)`.
+        rows: A number for each column, shape `(time, column)`. Columns may be views of
+            it if its numbers lie column after column.
         assisted: Without assistance some columns are empty, `assisted_only`; for all
             rows, or one flag for each, shape `(time,)`.
         columns: Of the record, with those of the method.
@@ -108,10 +109,11 @@ def record_columns(
     judged = helped
     if _GAIN in places:
         judged = helped & ~np.isnan(rows[:, places[_GAIN]])
+    across = np.ascontiguousarray(rows.T)
     return {
         column.name: _as_kind(
             column,
-            rows[:, place].copy(),
+            across[place],
             judged if column.name == _VERDICT else helped,
         )
         for place, column in enumerate(columns)
