@@ -3,6 +3,7 @@
     python -m benchmarks.scale memory [DRIVERS ...]
     python -m benchmarks.scale kills [KILLS]
     python -m benchmarks.scale whole [DRIVERS]
+    python -m benchmarks.scale growth FIGURE.svg
 
 `memory` runs the study without records for 50 and 200 drivers (one overtaking event,
 two conditions, scripted intention) and prints the largest memory of the process, which
@@ -10,7 +11,10 @@ must not grow with their number. `kills` kills a worker of `local:2` at 20 rando
 moments and compares every byte with a study that nobody disturbed; exit code 1 if one
 differs.
 `whole` is the study of the paper with 1,000 drivers: 7 conditions, 8 km, the network;
-fewer tell what a driver takes. Edit nothing meanwhile: workers would be refused.
+fewer tell what a driver takes. `growth` runs one condition with the network for 1 to
+10,000 drivers over 0.8 km, and for 100 drivers over 0.8 to 80 km, prints time and
+memory, and writes the figure of docs/scale.md. Edit nothing meanwhile: workers would be
+refused.
 """
 
 from __future__ import annotations
@@ -28,13 +32,28 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from matplotlib.figure import Figure
+
+from costeer.pages.style import (
+    FAINT,
+    FULL_WIDTH_MM,
+    INK,
+    RULE,
+    Margins,
+    new_figure,
+    panels,
+    styled,
+    svg_text,
+)
 from costeer.scale.cluster import workers
 from costeer.study import run as study_run
+from costeer.study.batches import TOGETHER_FROM
 from costeer.study.configuration import StudySettings
 from costeer.study.run import Scale, run_study
 from costeer.study.trials import TrialDone
 from tests.study.fakes import contents
 
+DRIVERS, LENGTHS = (1, 10, 100, 1000, 10_000), (800, 8_000, 80_000)
 SEED = 1
 SHORT = ("--conditions", "manual,weak-gentle", "--intention", "scripted")
 SHORT += ("--length", "1800")
@@ -167,10 +186,80 @@ def whole(drivers: int) -> int:
     return 0
 
 
+class Grown(NamedTuple):
+    """One point of a figure.
+
+    Attributes:
+        kilometres: Driven in all [km].
+        seconds: Of the whole command [s].
+        peak: Its largest memory [MB].
+    """
+
+    kilometres: float
+    seconds: float
+    peak: float
+
+
+def growth(file: Path) -> int:
+    """Print and draw how time and memory grow."""
+    series = {
+        "drivers, 0.8 km each": [(number, 800) for number in DRIVERS],
+        "length, 100 drivers": [(100, length) for length in LENGTHS],
+    }
+    found: dict[str, list[Grown]] = {}
+    with tempfile.TemporaryDirectory() as folder:
+        for number in (1, TOGETHER_FROM):  # compiles
+            ran(Path(folder) / str(number), number, *_grown(200))
+        for name, points in series.items():
+            for drivers, length in points:
+                out = Path(folder) / f"{drivers}-{length}"
+                each = ran(out, drivers, *_grown(length))
+                point = Grown(drivers * length / 1e3, each.seconds, each.peak)
+                found.setdefault(name, []).append(point)
+                print(
+                    f"{drivers} drivers, {length / 1e3:g} km: {point.seconds:.1f} s, "
+                    f"peak {point.peak:.0f} MB",
+                    flush=True,
+                )
+    with styled():
+        text = svg_text(drawn(found), "growth", "Time and memory of a study")
+    file.write_text(text, "utf-8")
+    return 0
+
+
+def _grown(length: int) -> tuple[str, ...]:
+    return "--conditions", "strong-normal", "--length", str(length)
+
+
+def drawn(found: dict[str, list[Grown]]) -> Figure:
+    """Time and memory against the kilometres that are driven."""
+    figure = new_figure(FULL_WIDTH_MM, 70.0)
+    (row,) = panels(figure, 1, 2, Margins(left=14.0, top=10.0, right=4.0))
+    looks = zip(found.items(), (INK, FAINT), ("o", "s"), strict=True)
+    for (name, points), colour, mark in looks:
+        driven = [point.kilometres for point in points]
+        for axes, values in zip(
+            row, ([p.seconds for p in points], [p.peak for p in points]), strict=True
+        ):
+            axes.plot(driven, values, mark, color=colour, label=name)
+    last = found[next(iter(found))][-1]
+    least = min(point.kilometres for point in found[next(iter(found))])
+    begin = last.kilometres / last.seconds
+    line = ([begin, last.kilometres], [1.0, last.seconds])
+    row[0].plot(*line, "-", color=RULE, label="proportional")
+    for axes, label in zip(row, ("time [s]", "largest memory [MB]"), strict=True):
+        axes.set(xscale="log", xlabel="driven [km]", ylabel=label)
+        axes.set_xlim(least / 2.0, 2.0 * last.kilometres)
+    row[0].set_yscale("log")
+    row[1].set_ylim(0.0, None)
+    row[0].legend(loc="upper left")
+    return figure
+
+
 def main(words: list[str]) -> int:
     """Run what the words name."""
     kind = words[0] if words else ""
-    numbers = [int(word) for word in words[1:]]
+    numbers = [int(word) for word in words[1:] if word.isdigit()]
     print(
         f"{platform.machine()}, {os.cpu_count()} cores, load {os.getloadavg()[0]:.1f}"
     )
@@ -180,6 +269,8 @@ def main(words: list[str]) -> int:
         return kills(*(numbers or [20]))
     if kind == "whole":
         return whole(*(numbers or [1000]))
+    if kind == "growth":
+        return growth(Path(words[1]))
     print(__doc__)
     return 2
 

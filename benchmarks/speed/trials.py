@@ -85,12 +85,13 @@ def _batches(name: str, trials: list[TrialSetup], rounds: int) -> Outcome:
         f"eight at a time, {threads} threads": (_together, threads),
         "eight at a time, 1 thread": (_together, 1),
     }
-    for drive, _ in ways.values():
-        drive(trials[:WIDTH])  # compiled by then
     found: dict[str, list[float]] = {way: [] for way in ways}
-    for _ in range(rounds):
-        for way, (drive, on) in ways.items():
-            found[way].append(_speed(drive, trials, on))
+    with ThreadPoolExecutor(threads) as all_of_them, ThreadPoolExecutor(1) as only:
+        for number in range(rounds + 1):
+            for way, (drive, on) in ways.items():
+                speed = _speed(drive, trials, only if on == 1 else all_of_them)
+                if number > 0:  # compiled by then
+                    found[way].append(speed)
     speeds = {way: np.array(each) for way, each in found.items()}
     apart, eight, single = speeds.values()
     what = f"batch, {name}"
@@ -104,13 +105,12 @@ def _batches(name: str, trials: list[TrialSetup], rounds: int) -> Outcome:
 def _speed(
     drive: Callable[[Sequence[TrialSetup]], float],
     trials: Sequence[TrialSetup],
-    threads: int,
+    pool: ThreadPoolExecutor,
 ) -> float:
     """Driver-seconds per second of trials that are driven in batches of eight."""
     batches = [trials[k : k + WIDTH] for k in range(0, len(trials), WIDTH)]
     begun = time.perf_counter()
-    with ThreadPoolExecutor(threads) as pool:
-        driven = sum(pool.map(drive, batches))
+    driven = sum(pool.map(drive, batches))
     return driven / (time.perf_counter() - begun)
 
 

@@ -101,7 +101,7 @@ def test_without_mistakes_come_first() -> None:
         ),
         ({"mistakes": ("latency", "latency")}, "mistake latency is given twice"),
         ({"mistakes": ("latency=9",)}, "latency has size 9; give a number from"),
-        ({"participants": 0}, "participants is 0; give a whole number 1 to 9999"),
+        ({"participants": 0}, "participants is 0; give a whole number 1 to 100000"),
         ({"condition": "manual"}, "condition manual has no guidance"),
         ({"condition": "strong"}, "unknown condition 'strong'"),
         ({"intention": "mind"}, "intention 'mind' is not known; choose one of"),

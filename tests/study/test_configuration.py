@@ -99,7 +99,7 @@ def test_a_configuration_without_a_seed_is_refused() -> None:
 @pytest.mark.parametrize(
     ("changes", "message"),
     [
-        ({"participants": 0}, "participants is 0; give a whole number 1 to 9999"),
+        ({"participants": 0}, "participants is 0; give a whole number 1 to 100000"),
         ({"participants": True}, "participants must be a whole number, not True"),
         ({"participants": 1.5}, "participants must be a whole number, not 1.5"),
         ({"seed": -1}, "seed is -1; give a whole number 0 to"),

@@ -4,8 +4,8 @@ LLVM does not turn a loop over drivers into vector instructions by itself. Where
 number is of this kind, the same equations, compiled for it, do eight trials with each
 instruction. Each lane computes what a plain number computes, to the last bit: only
 additions, products, quotients, square roots and comparisons, which the standard rounds
-in one way (IEEE 754), are done together; sines and the like lane by lane, by the same
-function of the C library.
+in one way (IEEE 754), are done together; sines and the like are made of them
+(elementary.py), and what is left goes lane by lane to the C library.
 
 What base/array.py says for other engines is said for this one here.
 """

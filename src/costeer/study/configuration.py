@@ -48,7 +48,7 @@ from costeer.study.plain import (
     plain_values,
 )
 
-MOST_PARTICIPANTS = 9999
+MOST_PARTICIPANTS = 100_000
 LARGEST_SEED = 2**63 - 1
 
 

@@ -65,16 +65,22 @@ def test_a_damaged_network_is_a_named_line(monkeypatch: pytest.MonkeyPatch) -> N
     assert [f.reason for f in skipped] == ["the shipped network was altered"]
 
 
-def test_trials_are_measured_with_and_without_the_network() -> None:
+def test_trials_are_measured_with_and_without_the_network(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(trials, "default_jobs", lambda: 2)
     found = measure_trials(TINY)
-    assert names(found) == [
-        "one trial, scripted",
-        "one trial, scripted",
-        "batch, scripted",
-        "one trial, network",
-        "one trial, network",
-        "batch, network",
+    measured = [
+        "one trial, {}",
+        "one trial, {}",
+        "batch, {}, one by one, 2 threads",
+        "batch, {}, eight at a time, 2 threads",
+        "batch, {}, eight at a time, 1 thread",
+        "batch, {}, eight over one",
+        "batch, {}, threads used",
     ]
+    wanted = [each.format(how) for how in ("scripted", "network") for each in measured]
+    assert names(found) == wanted
     assert all(f.median > 0.0 for f in figures(found))
 
 
