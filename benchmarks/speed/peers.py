@@ -1,4 +1,7 @@
-"""Plant against plant: the same manoeuvre at the same step, here and in two peers.
+"""Plant against plant: the same manoeuvre here and in four peers.
+
+Peers that let the step be chosen take ours, 480 Hz; the two with a physics engine,
+which is compiled, keep the step that they are made for.
 
 Only the car is compared, with a steering angle given from outside: no driver, no
 controller, no column. The peers are Python packages; most of the ratio to them is
@@ -9,6 +12,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -67,6 +71,8 @@ def measure_peers(effort: Effort) -> Outcome:
         _speed(PLAIN, lambda n: drive(car, n), PLANT_DT, effort),
         *_highway_env(effort),
         *_commonroad(effort),
+        *_car_racing(effort),
+        *_racecar(effort),
     ]
     return [*outcome, *ratios([o for o in outcome if isinstance(o, Figure)])]
 
@@ -144,6 +150,67 @@ def _commonroad(effort: Effort) -> Outcome:
             "restarted at 60 Hz, its own steps between",
         ),
     ]
+
+
+def _car_racing(effort: Effort) -> Outcome:
+    """The car of Gymnasium's CarRacing, five bodies of Box2D, without a track."""
+    name = "Gymnasium CarRacing, car of Box2D"
+    try:
+        from Box2D import b2World
+        from gymnasium.envs.box2d.car_dynamics import Car
+    except ImportError:
+        return [Skipped("plant", name, _INSTALL)]
+
+    def run(num_steps: int) -> float:
+        world = b2World((0.0, 0.0))
+        car: Any = Car(world, 0.0, 0.0, 0.0)  # Any: attributes are not declared
+        for body in (car.hull, *car.wheels):
+            body.linearVelocity = (0.0, SPEED)
+        for k in range(num_steps):
+            car.steer(steering(k / _RACING_RATE))
+            car.step(1.0 / _RACING_RATE)
+            world.Step(1.0 / _RACING_RATE, 6 * 30, 2 * 30)
+        return float(car.hull.position[0])
+
+    return [_speed(name, run, 1.0 / _RACING_RATE, effort)]
+
+
+def _racecar(effort: Effort) -> Outcome:
+    """PyBullet's racecar on a plane, by its own step."""
+    name = "PyBullet, racecar"
+    try:
+        import pybullet
+        import pybullet_data
+    except ImportError:
+        return [Skipped("plant", name, _INSTALL)]
+    world = pybullet.connect(pybullet.DIRECT)
+    pybullet.setAdditionalSearchPath(pybullet_data.getDataPath())
+
+    def run(num_steps: int) -> float:
+        pybullet.resetSimulation()
+        pybullet.setGravity(0.0, 0.0, -9.81)
+        pybullet.loadURDF("plane.urdf")
+        car = pybullet.loadURDF("racecar/racecar.urdf")
+        pybullet.resetBaseVelocity(car, (SPEED, 0.0, 0.0))
+        for k in range(num_steps):
+            angle = steering(k / _BULLET_RATE)
+            for joint in _BULLET_STEERED:
+                pybullet.setJointMotorControl2(
+                    car, joint, pybullet.POSITION_CONTROL, targetPosition=angle
+                )
+            pybullet.stepSimulation()
+        return float(pybullet.getBasePositionAndOrientation(car)[0][1])
+
+    try:
+        return [_speed(name, run, 1.0 / _BULLET_RATE, effort)]
+    finally:
+        pybullet.disconnect(world)
+
+
+_RACING_RATE, _BULLET_RATE = 50.0, 240.0
+"""Steps a second that the two are made for [1/s]."""
+_BULLET_STEERED = (4, 6)
+"""Joints of the front wheels."""
 
 
 def _steering_rate(time: float) -> float:

@@ -123,13 +123,16 @@ def test_peers_that_are_not_installed_are_named(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setattr(peers, "SECONDS", 0.05)
-    for module in ("highway_env", "highway_env.vehicle.dynamics", "vehiclemodels"):
+    lacking = "highway_env", "highway_env.vehicle.dynamics", "vehiclemodels"
+    for module in (*lacking, "Box2D", "pybullet"):
         monkeypatch.setitem(sys.modules, module, None)
     outcome = measure_peers(TINY)
     skipped = [f for f in outcome if isinstance(f, Skipped)]
     assert names(skipped) == [
         "highway-env, dynamic bicycle",
         "CommonRoad, single track",
+        "Gymnasium CarRacing, car of Box2D",
+        "PyBullet, racecar",
     ]
     assert "[bench]'" in skipped[0].reason
     assert names(figures(outcome)) == [COMPILED, PLAIN, f"compiled over {PLAIN}"]
@@ -142,16 +145,22 @@ def test_a_ratio_is_ours_over_theirs() -> None:
     assert (ratio.median, ratio.low, ratio.high) == (10.0, 5.0, 15.0)
 
 
-@pytest.mark.parametrize("module", ["highway_env", "vehiclemodels"])
+PEERS = {
+    "highway_env": "highway-env",
+    "vehiclemodels": "CommonRoad",
+    "Box2D": "CarRacing",
+    "pybullet": "PyBullet",
+}
+
+
+@pytest.mark.parametrize("module", PEERS)
 def test_an_installed_peer_is_measured(
     module: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     pytest.importorskip(module)
     monkeypatch.setattr(peers, "SECONDS", 0.05)
     measured = " ".join(names(figures(measure_peers(TINY))))
-    assert {"highway_env": "highway-env", "vehiclemodels": "CommonRoad"}[
-        module
-    ] in measured
+    assert PEERS[module] in measured
 
 
 def test_the_help_is_started_in_a_process_of_its_own() -> None:
