@@ -76,29 +76,27 @@ log = _of_library(math.log)
 
 
 @compiled
-def _sine(x: Any, rest: Any) -> Any:
-    """Of an angle `x + rest` up to `NEAR`, where `rest` is far smaller than `x`."""
+def _sine(x: Any) -> Any:
+    """Sine of an angle up to `NEAR`, without the angle itself."""
     z = x * x
     w = z * z
-    low = 0.008333333333330936 + z * -0.00019841269836740532
-    high = 2.7557316093198404e-06 + z * -2.5051129896450185e-08
-    inner = low + w * (high + w * 1.5917988979397435e-10)
-    cube = z * x
-    return x - ((z * (0.5 * rest - cube * inner) - rest) - cube * -0.16666666666666666)
+    low = -0.16666666666666666 + z * 0.008333333333330936
+    middle = -0.00019841269836740532 + z * 2.7557316093198404e-06
+    high = -2.5051129896450185e-08 + z * 1.5917988979397435e-10
+    return (z * x) * (low + w * (middle + w * high))
 
 
 @compiled
-def _cosine(x: Any, rest: Any) -> Any:
-    """Of an angle `x + rest`, as `_sine`."""
+def _cosine(x: Any) -> Any:
+    """Cosine of an angle up to `NEAR`, in two parts: rounded, and what it lacks."""
     z = x * x
     w = z * z
     low = 0.041666666666666664 + z * -0.0013888888888887389
     middle = 2.48015872987544e-05 + z * -2.755731726587808e-07
     high = 2.087614504941318e-09 + z * -1.1382544645349249e-11
-    inner = low + w * (middle + w * high)
     half = 0.5 * z
     rounded = 1.0 - half
-    return rounded + (((1.0 - rounded) - half) + (w * inner - x * rest))
+    return rounded, ((1.0 - rounded) - half) + w * (low + w * (middle + w * high))
 
 
 @compiled
@@ -122,6 +120,14 @@ def _without_quarters(x: Any) -> Any:
 
 
 @compiled
+def _both(x: Any, rest: Any) -> Any:
+    """Sine and cosine of an angle `x + rest`, where `rest` is far smaller than `x`."""
+    rounded, lacking = _cosine(x)
+    sine = x + (_sine(x) + rest * rounded)
+    return sine, rounded + (lacking - x * rest)
+
+
+@compiled
 def _quarter(count: Any) -> Any:
     """Which of the four quarters: -2, -1, 0, 1 or 2, the first and last being one."""
     return count - 4.0 * ((0.25 * count + ROUNDER) - ROUNDER)
@@ -133,7 +139,8 @@ def _far_sine(x: Any, ahead: Any) -> Any:
     count, near, rest = _without_quarters(x)
     quarter = _quarter(count + ahead)
     size = quarter * quarter
-    value = choose(size == 1.0, _cosine(near, rest), _sine(near, rest))
+    sine, cosine = _both(near, rest)
+    value = choose(size == 1.0, cosine, sine)
     return choose((quarter == -1.0) | (size == 4.0), -value, value)
 
 
@@ -142,7 +149,7 @@ def _far_tangent(x: Any) -> Any:
     """Of an angle beyond `NEAR`."""
     count, near, rest = _without_quarters(x)
     quarter = _quarter(count)
-    sine, cosine = _sine(near, rest), _cosine(near, rest)
+    sine, cosine = _both(near, rest)
     odd = quarter * quarter == 1.0
     return choose(odd, -cosine, sine) / choose(odd, sine, cosine)
 
@@ -150,7 +157,7 @@ def _far_tangent(x: Any) -> Any:
 @compiled
 def sin(x: Any) -> Any:
     """Sine of an angle in radians."""
-    value = _sine(x, 0.0)
+    value = x + _sine(x)
     size = x * x
     if anywhere(size > NEAR * NEAR):
         value = choose(size > NEAR * NEAR, _far_sine(x, 0.0), value)
@@ -162,7 +169,8 @@ def sin(x: Any) -> Any:
 @compiled
 def cos(x: Any) -> Any:
     """Cosine of an angle in radians."""
-    value = _cosine(x, 0.0)
+    rounded, lacking = _cosine(x)
+    value = rounded + lacking
     size = x * x
     if anywhere(size > NEAR * NEAR):
         value = choose(size > NEAR * NEAR, _far_sine(x, 1.0), value)
@@ -174,7 +182,8 @@ def cos(x: Any) -> Any:
 @compiled
 def tan(x: Any) -> Any:
     """Tangent of an angle in radians."""
-    value = _sine(x, 0.0) / _cosine(x, 0.0)
+    rounded, lacking = _cosine(x)
+    value = (x + _sine(x)) / (rounded + lacking)
     size = x * x
     if anywhere(size > NEAR * NEAR):
         value = choose(size > NEAR * NEAR, _far_tangent(x), value)
@@ -256,11 +265,11 @@ def _doublings(x: Any) -> Any:
 @compiled
 def exp(x: Any) -> Any:
     """Exponential function."""
-    held = choose(x > 710.0, 710.0, choose(x < -746.0, -746.0, x))
-    count, r = _doublings(held)
+    count, r = _doublings(x)
     half = (0.5 * count + ROUNDER) - ROUNDER
     grown = (1.0 + _grown(r)) * power_of_two(half)
-    return grown * power_of_two(count - half)
+    value = grown * power_of_two(count - half)
+    return choose(x > 710.0, math.inf, choose(x < -746.0, 0.0, value))
 
 
 @compiled
