@@ -77,7 +77,10 @@ def train(
     ] = None,
     data: Annotated[
         Path | None,
-        typer.Option(help="With --dataset: folder that holds the data sets."),
+        typer.Option(
+            help="With --dataset: folder that holds the data sets; by default "
+            "the one that the environment variable COSTEER_DATA names, else data."
+        ),
     ] = None,
     resample: Annotated[
         bool,
