@@ -115,7 +115,7 @@ def test_a_trial_that_cannot_be_driven_spoils_no_other(
 def test_who_is_slow_gets_random_numbers_until_the_end(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(together, "LIKELY_SHARE", 1.4)
+    monkeypatch.setattr(trial, "LIKELY_SHARE", 1.4)
     setups = [setup(participant) for participant in (1, 2, 3)]
     found, alone, blocks = driven_both_ways(setups, tmp_path, monkeypatch)
     assert found == alone
