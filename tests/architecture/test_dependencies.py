@@ -16,6 +16,9 @@ PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]
 PEERS = {
     "highway_env": "highway-env",
     "vehiclemodels": "commonroad-vehicle-models",
+    "Box2D": "box2d",
+    "pybullet": "pybullet",
+    "pybullet_data": "pybullet",
 }
 """Modules of the extra `bench`, which need not be installed, and what brings them."""
 
