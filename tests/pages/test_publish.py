@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import re
 
 import pytest
@@ -101,3 +102,20 @@ def test_what_is_not_there_is_told() -> None:
         bare = Exhibit("f", "F", "", "", new_figure(50.0, 50.0))
         with pytest.raises(ValueError, match="no data"):
             published(bare, None, "csv")
+
+
+@pytest.mark.parametrize("before", [True, False])
+def test_the_style_leaves_the_collector_as_it_was(before: bool) -> None:
+    def drawn() -> None:
+        with styled():
+            assert not gc.isenabled()
+            raise ValueError("drawing")
+
+    was = gc.isenabled()
+    (gc.enable if before else gc.disable)()
+    try:
+        with pytest.raises(ValueError, match="drawing"):
+            drawn()
+        assert gc.isenabled() == before
+    finally:
+        (gc.enable if was else gc.disable)()
