@@ -122,6 +122,19 @@ def test_who_is_slow_gets_random_numbers_until_the_end(
     assert len(blocks) == 2  # the first one ran out
 
 
+@pytest.mark.slow
+def test_a_trial_ends_when_its_own_time_is_over(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    crawls = (("driver.longitudinal.preferred_speed", 8.0),)
+    setups = [
+        setup(participant)._replace(speed=speed, parameters=crawls, events=False)
+        for participant, speed in ((1, 12.0), (2, 12.0), (3, 30.0))
+    ]
+    found, alone, _ = driven_both_ways(setups, tmp_path, monkeypatch)
+    assert found == alone
+
+
 def test_every_parameter_reaches_the_trials_of_a_block() -> None:
     bare = Bare(fleet=True, mistakes=True)
     given = without(loop_parameters(setup(1)), bare)

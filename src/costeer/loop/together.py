@@ -134,12 +134,13 @@ def _driven_together(
 ) -> dict[int, TrialRecord | Exception]:
     """Drive up to eight trials; lanes that are left over repeat the last one."""
     likely = max(likely_steps(each.setup, each.parameters) for each in trials)
-    for steps in (likely, max(slowest_steps(each.setup) for each in trials)):
+    slowest = [slowest_steps(each.setup) for each in trials]
+    for steps in (likely, max(slowest)):
         block = _run([*trials, *[trials[-1]] * (WIDTH - len(trials))], steps)
         if block.counts.all():
             break
-    counts = np.where(block.counts > 0, block.counts, steps)
-    done = zip(trials, block.rows, counts, strict=False)
+    counts = np.where(block.counts > 0, block.counts, steps)[: len(trials)]
+    done = zip(trials, block.rows, np.minimum(counts, slowest), strict=False)
     # A copy, because the next block fills the same rows.
     return {
         each.place: _record(each, rows[:, :count].copy().T)
