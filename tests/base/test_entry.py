@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import shutil
 import subprocess
 import sys
+import threading
 from pathlib import Path
 from typing import Any
 
@@ -193,6 +195,7 @@ LIKE = State(0.0)
 
 TWICE = """
 import sys
+import threading
 from costeer.base.entry import entry_for
 from costeer.base.packing import packed, pack, unpack
 from costeer.base.plugins import load_object
@@ -242,3 +245,32 @@ def test_one_file_under_two_names_has_machine_code_for_each(
     assert [ran(place) for place in places] == ["20.0 0", "20.0 0"]
     assert [ran(place) for place in places] == ["20.0 1", "20.0 1"]
     assert ran(*places) == ran(*places[::-1]) == "20.0 1,20.0 1"
+
+
+def test_threads_do_not_take_each_other_s_folders(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    # With the folders mixed up, machine code lay in the directory of the caller.
+    together = threading.Barrier(2)
+    seen: list[tuple[str, str]] = []
+
+    def kept(dispatcher: Any, _: object) -> Any:
+        before = entry._settings.CACHE_DIR
+        with contextlib.suppress(threading.BrokenBarrierError):
+            together.wait(0.2)  # one at a time: the other one cannot come
+        seen.append((before, entry._settings.CACHE_DIR))
+        return dispatcher
+
+    monkeypatch.setattr(entry, "_kept", kept)
+    usual = entry._settings.CACHE_DIR
+    threads = [
+        threading.Thread(target=entry.entry_for, args=((torque_of,), lambda x: x))
+        for _ in range(2)
+    ]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert len(seen) == 2
+    assert all(str(cache_folder()) in folder for pair in seen for folder in pair)
+    assert usual == entry._settings.CACHE_DIR

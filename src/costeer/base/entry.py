@@ -10,7 +10,9 @@ from __future__ import annotations
 
 import hashlib
 import os
-from collections.abc import Callable, Iterable
+import threading
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
 from functools import cache
 from pathlib import Path
 from typing import Any, TypeVar, cast
@@ -77,6 +79,24 @@ def cache_folder() -> Path:
     return private_folder(root, source_hash(Path(__file__).parents[1]))
 
 
+_SETTING = threading.Lock()
+
+
+@contextmanager
+def _machine_code_in(folder: Path) -> Iterator[None]:
+    """Let Numba look for the machine code of what is made meanwhile in a folder.
+
+    It takes the folder from a setting of the whole process: one thread at a time.
+    """
+    with _SETTING:
+        before = _settings.CACHE_DIR
+        _settings.CACHE_DIR = str(folder)
+        try:
+            yield
+        finally:
+            _settings.CACHE_DIR = before
+
+
 def _kept(dispatcher: Any, kept: FunctionCache) -> Any:  # Any: Numba has no types
     """A compiled function whose machine code is kept in sealed files."""
     files = cast("Any", kept)
@@ -106,12 +126,8 @@ def entry_for(parts: Iterable[Callable[..., Any]], function: Function) -> Functi
     dispatcher: Any = numba.njit(nogil=True, error_model="numpy")(function)
     if is_interactive(parts):
         return cast("Function", dispatcher)
-    before = _settings.CACHE_DIR
-    _settings.CACHE_DIR = str(cache_folder() / plugin_hash(parts))
-    try:
+    with _machine_code_in(cache_folder() / plugin_hash(parts)):
         _kept(dispatcher, cast("Any", _ClosureCache)(function))
-    finally:
-        _settings.CACHE_DIR = before
     return cast("Function", dispatcher)
 
 
@@ -147,13 +163,9 @@ def entry(function: Function) -> Function:
     The compiled function releases the global interpreter lock, so threads run trials
     side by side.
     """
-    before = _settings.CACHE_DIR
-    _settings.CACHE_DIR = str(cache_folder())
-    try:
-        dispatcher = numba.njit(nogil=True, error_model="numpy")(function)
+    dispatcher = numba.njit(nogil=True, error_model="numpy")(function)
+    with _machine_code_in(cache_folder()):
         return cast("Function", _kept(dispatcher, cast("Any", FunctionCache)(function)))
-    finally:
-        _settings.CACHE_DIR = before
 
 
 @cache

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Sequence
-from functools import cache
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -44,7 +43,7 @@ from costeer.loop.trial import (
     trial_script,
 )
 from costeer.methods.ibhs import IBHS
-from costeer.methods.interface import Rule
+from costeer.methods.interface import Method, Rule, compiled_once
 from costeer.methods.manual import MANUAL
 from costeer.records.columns import TrialRecord
 
@@ -177,7 +176,7 @@ def _run(trials: Sequence[_Prepared], steps: int) -> Block:
         counts=np.zeros(WIDTH, np.int64),
     )
     networks = [trial_network(t.setup, t.parameters, t.predictor) for t in trials]
-    run = _compiled_block(layout_of(lean[0]))
+    run = compiled_once(_compiled_block, method, layout_of(lean[0]))
     run(packed(lean[0]), block, trial_script(trials[0].setup), stacked(networks))
     return block
 
@@ -195,14 +194,13 @@ def _room(name: str, shape: tuple[int, ...]) -> Rows:
     return there[:size].reshape(shape)
 
 
-@cache
-def _compiled_block(layout: Any) -> Any:  # Any: of parameters; a function of Numba
+def _compiled_block(method: Method[Any, Any]) -> Any:  # Any: a function of Numba
     """The compiled block; its machine code is kept as that of single trials is."""
-    ((begin, step), (sit, act)), fill = loop_rule(IBHS, VIRTUAL)
+    ((begin, step), (sit, act)), fill = loop_rule(method, VIRTUAL)
     usual = loop_parameters(TrialSetup())
     like = without(usual, _BARE)
     each = own(like)
-    start = on_bare_road(initial_state(rules_of(IBHS), usual))
+    start = on_bare_road(initial_state(rules_of(method), usual))
 
     def run_packed(
         shared: Rows, block: Block, script: Script, network: Network

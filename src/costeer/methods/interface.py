@@ -7,6 +7,7 @@ are pure and marked `compiled`, so that every engine runs them.
 
 from __future__ import annotations
 
+import threading
 from collections.abc import Callable, Hashable
 from functools import cache
 from typing import Any, Generic, NamedTuple, TypeVar
@@ -128,6 +129,7 @@ def rule_of(method: Method[P, S]) -> Rule[P, S]:
 
 
 _COMPILED: dict[tuple[Any, ...], Any] = {}
+_COMPILING = threading.RLock()
 
 
 def compiled_once(
@@ -149,9 +151,10 @@ def compiled_once(
         _layout(method),
         *others,
     )
-    if key not in _COMPILED:
-        _COMPILED[key] = make(method)
-    return _COMPILED[key]
+    with _COMPILING:  # threads drive the trials of a study
+        if key not in _COMPILED:
+            _COMPILED[key] = make(method)
+        return _COMPILED[key]
 
 
 @cache
